@@ -126,7 +126,7 @@ pub struct Air {
     inbound: Vec<(Sender, Vec<InFlight>)>,
     order: u64,
     counts: AirCounts,
-    /// Which links are dead, by sender and receiver, and the tick up to which that is computed.
+    /// Dead links by sender and receiver, and the tick up to which they are computed.
     dead: Vec<[bool; Sender::COUNT]>,
     dead_in: u32,
     stretches: Stream,
@@ -135,7 +135,7 @@ pub struct Air {
 #[derive(Clone, Debug)]
 struct InFlight {
     due: u32,
-    /// Sequence number of the next packet.
+    /// Sequence number of the packet.
     order: u64,
     packet: Packet,
 }
@@ -233,12 +233,14 @@ impl Air {
     /// The packets robot `to` receives in tick `now`, in order.
     pub fn deliver(&mut self, now: u32, to: RobotId) -> heapless::Vec<Packet, AIR_IN_MAX> {
         let Some(queue) = self.queue(Sender::Robot(to)) else { return heapless::Vec::new() };
-        let mut bytes = 0;
-        let fits = |arrived: &&InFlight| {
+        let (mut due, mut bytes) = (0, 0);
+        for arrived in queue.iter().take(AIR_IN_MAX).take_while(|arrived| arrived.due <= now) {
             bytes += arrived.packet.len();
-            arrived.due <= now && bytes <= AIR_IN_BYTES_MAX
-        };
-        let due = queue.iter().take(AIR_IN_MAX).take_while(fits).count();
+            if bytes > AIR_IN_BYTES_MAX {
+                break;
+            }
+            due += 1;
+        }
         let packets = queue.drain(..due).map(|arrived| arrived.packet).collect();
         self.counts.delivered += due as u64;
         packets
@@ -316,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn by_default_everyone_but_the_speaker_receives_it_a_tick_later() {
+    fn by_default_all_but_the_sender_receive_a_packet_one_tick_later() {
         let mut air = air(AirSettings::default());
         air.send(5, id(2), &packet(1));
         assert!(air.deliver(5, id(1)).is_empty());
@@ -327,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn thirty_in_a_hundred_are_lost_and_ten_come_twice() {
+    fn loss_and_duplication_have_the_configured_probabilities() {
         let settings = AirSettings { duplication: 0.1, ..AirSettings::with_loss(0.3) };
         let (received, counts) = received(settings, 4_000);
         let once = 4_000.0 * 0.7;
@@ -338,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn bursts_lose_their_share_in_stretches_of_their_length() {
+    fn bursts_have_the_configured_share_and_mean_length() {
         let settings =
             AirSettings { bursts: Some(Bursts { share: 0.3, ticks: 8.0 }), ..AirSettings::default() };
         let n = 40_000;
@@ -352,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn delays_stay_within_their_bounds_and_reach_both() {
+    fn delays_stay_within_their_bounds_and_reach_both_of_them() {
         let (received, _) = received(AirSettings { delay: [1, 3], ..AirSettings::default() }, 300);
         let delays: Vec<u32> = received.iter().map(|(tick, sent)| tick - sent).collect();
         assert!(delays.iter().all(|d| (1..=3).contains(d)) && [1, 2, 3].iter().all(|d| delays.contains(d)));
@@ -370,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn a_partition_and_a_bad_link_cut_only_what_they_name() {
+    fn a_partition_and_a_link_loss_cut_no_other_links() {
         let mut settings = AirSettings::default();
         settings.groups[3] = 1;
         settings.links.push(LinkLoss { from: Sender::Robot(id(1)), to: Sender::Robot(id(2)), loss: 1.0 });
@@ -384,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_into_a_tick_waits_and_what_a_dead_radio_misses_is_lost() {
+    fn surplus_packets_wait_a_tick_and_a_radio_that_is_off_loses_them() {
         let mut air = air(AirSettings::default());
         for n in 0..20 {
             air.send(0, id(1), &packet(n));
@@ -397,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn long_packets_wait_where_their_bytes_do_not_fit_into_a_tick() {
+    fn packets_wait_when_the_bytes_of_a_tick_are_used_up() {
         let mut air = air(AirSettings::default());
         let long = Packet::from_slice(&[7; 120]).unwrap();
         (0..12).for_each(|_| air.send(0, id(1), &long));
@@ -406,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_speaks_to_all_or_to_one_and_receives_everyone() {
+    fn a_host_sends_to_all_or_to_one_robot_and_receives_from_all() {
         let mut air = Air::with_host(AirSettings::default(), 9, &[id(2), id(1)]);
         air.send_from_host(0, None, &packet(7));
         air.send_from_host(0, Some(id(1)), &packet(8));
@@ -420,7 +422,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hosts_packets_are_lost_as_others_are() {
+    fn loss_applies_to_a_hosts_packets_too() {
         let deaf = LinkLoss { from: Sender::Host, to: Sender::Robot(id(2)), loss: 1.0 };
         let settings = AirSettings { links: vec![deaf], ..AirSettings::with_loss(0.3) };
         let mut air = Air::with_host(settings, 9, &[id(1), id(2)]);

@@ -32,7 +32,7 @@ impl Fnv {
 }
 
 impl fmt::Display for Fnv {
-    /// Sixteen hexadecimal digits.
+    /// Writes sixteen hexadecimal digits, zeros included.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:016x}", self.0)
     }
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_agrees_with_the_published_vectors() {
+    fn fnv_agrees_with_the_published_vectors() {
         let hash = |text: &str| {
             let mut hash = Fnv::default();
             hash.add(text.as_bytes());

@@ -11,7 +11,7 @@ macro_rules! labels {
             /// All of them, in the order they are declared.
             pub const ALL: [Self; [$(Self::$variant),+].len()] = [$(Self::$variant),+];
 
-            /// Its label in options, reports and files.
+            /// Label in options, reports and files.
             pub const fn label(self) -> &'static str {
                 match self { $(Self::$variant => $label),+ }
             }

@@ -5,23 +5,22 @@
 //! same time where they are processes. A crash is a dropped `Mcu`; a reboot is a new one with a larger epoch,
 //! whose clock starts at zero.
 
-use std::fmt;
-
 use brain::BrainConfig;
 use protocol::decision::DecisionReport;
 use protocol::link::Packet;
 use protocol::lockstep::{AIR_OUT_MAX, TickIn};
 use protocol::robot_io::ActuatorFrame;
+use thiserror::Error;
 
 /// A booted robot's computer.
 pub trait Mcu {
     /// Sends it a tick. The robot's own clock is in the tick; nothing else advances its time.
     fn post(&mut self, tick: &TickIn<'_>) -> Result<(), McuError>;
 
-    /// Its answer to the tick posted last.
+    /// Answer to the tick posted last.
     fn collect(&mut self) -> Result<Reply, McuError>;
 
-    /// Its newest decision as coordinator, where the computer can be looked into: nothing is sent for it.
+    /// Newest decision as coordinator, where the computer runs in this process: nothing is sent for it.
     fn decision(&self) -> Option<DecisionReport> {
         None
     }
@@ -35,7 +34,7 @@ pub trait Mcu {
 
 /// Boots robots' computers of one kind: native or under QEMU.
 pub trait Backend<'a> {
-    /// Its label in options and reports.
+    /// Label in options and reports.
     fn name(&self) -> &'static str;
 
     /// Boots a computer in the epoch of `config`; its clock is at zero.
@@ -55,62 +54,44 @@ pub struct Reply {
     pub stack: u32,
 }
 
-/// Why a robot's computer cannot be used.
-#[derive(Debug)]
+/// Failure of a robot's computer.
+#[derive(Debug, Error)]
 pub enum McuError {
     /// A program or file that the back end needs is missing on this machine.
+    #[error("{what} is missing: {hint}")]
     Missing {
         /// The program or file.
         what: String,
-        /// How to get it.
+        /// Command or package that provides it.
         hint: String,
     },
     /// The process could not be started.
-    Start(std::io::Error),
+    #[error("the robot's computer could not be started: {0}")]
+    Start(#[source] std::io::Error),
     /// Communication with the process failed.
-    Io(std::io::Error),
-    /// It did not answer in time.
+    #[error("talking to the robot's computer failed: {0}")]
+    Io(#[source] std::io::Error),
+    /// No answer in time.
+    #[error("the robot's computer did not answer {asked} within {waited_ms} ms")]
     Silent {
         /// The request that stayed unanswered.
         asked: &'static str,
-        /// How long the simulator waited, ms.
+        /// Time that the simulator waited, ms.
         waited_ms: u64,
     },
     /// The process ended by itself.
+    #[error("the robot's computer ended: {how}")]
     Ended {
-        /// Its exit status and its last output.
+        /// Exit status and last output of the process.
         how: String,
     },
-    /// Its answer cannot be decoded.
+    /// The answer cannot be decoded.
+    #[error("the robot's computer gave no proper answer: {what}")]
     Malformed {
-        /// What is wrong with it.
+        /// The part that is wrong.
         what: String,
     },
-    /// It refused the configuration or the case base.
+    /// The computer refused the configuration or the case base.
+    #[error("the robot's computer refused its configuration or its case base")]
     Unusable,
-}
-
-impl fmt::Display for McuError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Missing { what, hint } => write!(f, "{what} is missing: {hint}"),
-            Self::Start(e) => write!(f, "the robot's computer could not be started: {e}"),
-            Self::Io(e) => write!(f, "talking to the robot's computer failed: {e}"),
-            Self::Silent { asked, waited_ms } => {
-                write!(f, "the robot's computer did not answer {asked} within {waited_ms} ms")
-            }
-            Self::Ended { how } => write!(f, "the robot's computer ended: {how}"),
-            Self::Malformed { what } => write!(f, "the robot's computer gave no proper answer: {what}"),
-            Self::Unusable => f.write_str("the robot's computer refused its configuration or its case base"),
-        }
-    }
-}
-
-impl std::error::Error for McuError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Start(e) | Self::Io(e) => Some(e),
-            _ => None,
-        }
-    }
 }

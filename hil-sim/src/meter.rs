@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_meter_knows_the_middle_the_worst_and_the_deepest() {
+    fn a_meter_gives_median_and_worst_instructions_and_the_deepest_stack() {
         let meter = Meter::default();
         assert_eq!((meter.median_and_worst(), meter.stack()), ((0, 0), 0));
         let same = meter.clone();

@@ -45,7 +45,7 @@ impl<'a> NativeMcu<'a> {
         Self { station: Station::new(Instant(0), config, base), reply: Reply::default() }
     }
 
-    /// Its brain and radio.
+    /// Brain and radio endpoint of this computer.
     pub fn station(&self) -> &Station<'a> {
         &self.station
     }

@@ -99,7 +99,7 @@ impl Qemu {
         theirs: UnixDatagram,
         patience: Patience,
     ) -> Result<Self, McuError> {
-        socket.set_read_timeout(Some(LOOK_ROUND)).map_err(McuError::Io)?;
+        socket.set_read_timeout(Some(POLL_INTERVAL)).map_err(McuError::Io)?;
         command.stdin(OwnedFd::from(theirs)).stdout(Stdio::piped()).stderr(Stdio::piped());
         let child = command.spawn().map_err(McuError::Start)?;
         Ok(Self { child, socket, seq: 0, patience, frame: Box::new([0; FRAME_LEN_MAX]) })
@@ -156,7 +156,7 @@ impl Qemu {
             .ok_or_else(|| McuError::Malformed { what: format!("a frame of {len} bytes") })
     }
 
-    /// How the process ended, if it did.
+    /// Status and output of the process, if it has ended.
     fn ended(&mut self) -> Option<McuError> {
         let status = self.child.try_wait().ok()??;
         let mut reported = String::new();
@@ -250,8 +250,8 @@ fn find(program: &Path) -> Option<PathBuf> {
     env::split_paths(&path).map(|directory| directory.join(program)).find(|file| file.is_file())
 }
 
-/// What goes into the library slot of the board's flash: a temporary file of its own for each back end,
-/// deleted with it.
+/// Content of the library slot of the board's flash: a temporary file of its own for each back end, deleted
+/// with it.
 #[derive(Debug)]
 struct LibraryFile(PathBuf);
 
@@ -298,8 +298,8 @@ impl Default for Patience {
     }
 }
 
-/// How often the process is checked while no message comes.
-const LOOK_ROUND: Duration = Duration::from_millis(50);
+/// Interval at which the process is checked while no message comes.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 const PROGRAM: &str = "qemu-system-arm";
 /// Machine, instruction count (64 ns of virtual time each), exit on panic, and the network on descriptor 0.
 const MACHINE_ARGS: [&str; 16] = [
@@ -374,7 +374,7 @@ mod tests {
         BrainConfig::new(RobotId::new(2).unwrap(), TeamId(1))
     }
 
-    fn snapshot() -> SensorFrame {
+    fn sensors() -> SensorFrame {
         SensorFrame {
             pose: Some(Pose::from_mm_deg(100.0, -200.0, 30.0)),
             ball: None,
@@ -389,11 +389,11 @@ mod tests {
 
     fn tick(seq: u32) -> TickIn<'static> {
         let air = [&b"one"[..], b"two"].into_iter().collect();
-        TickIn { seq, now: protocol::Instant(40_000), air, sensors: snapshot() }
+        TickIn { seq, now: protocol::Instant(40_000), air, sensors: sensors() }
     }
 
     #[test]
-    fn set_up_and_ticks_go_there_and_back() {
+    fn set_up_and_ticks_are_exchanged_with_the_board() {
         let (mut robot, board) = quiet("sleep", &["30"]);
         send_message(&board, &FromRobot::Hello);
         send_message(&board, &FromRobot::Ready);
@@ -438,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_is_reported() {
+    fn a_refused_set_up_is_an_error() {
         let (mut robot, board) = quiet("sleep", &["30"]);
         send_message(&board, &FromRobot::Hello);
         send_message(&board, &FromRobot::Unusable);
@@ -446,21 +446,21 @@ mod tests {
     }
 
     #[test]
-    fn an_emulator_that_ends_reports_its_last_words() {
+    fn the_error_of_an_ended_emulator_has_its_status_and_output() {
         let (mut robot, _board) = quiet("sh", &["-c", "echo no such machine >&2; exit 3"]);
         let error = robot.set_up(&config()).unwrap_err().to_string();
         assert!(error.contains("exit status: 3; no such machine"), "{error}");
     }
 
     #[test]
-    fn an_emulator_that_says_nothing_is_waited_for_only_so_long() {
+    fn a_silent_emulator_times_out() {
         let (mut robot, _board) = quiet("sleep", &["30"]);
         let error = robot.set_up(&config()).unwrap_err();
         let McuError::Silent { asked: "its start", waited_ms: 120..5_000 } = error else { panic!("{error}") };
     }
 
     #[test]
-    fn what_is_not_installed_or_not_built_is_named_with_what_to_do() {
+    fn a_missing_image_or_emulator_is_named_with_the_command_that_gets_it() {
         let error = |backend: &mut QemuBackend| backend.boot(&config()).err().unwrap().to_string();
         let mut backend = QemuBackend::new("no/such/image");
         let text = error(&mut backend);
@@ -479,7 +479,7 @@ mod tests {
     }
 
     #[test]
-    fn a_library_lies_behind_its_header_and_goes_with_the_back_end() {
+    fn a_library_file_has_its_header_and_is_deleted_with_the_back_end() {
         let backend = QemuBackend::new("image").with_library(&[5; 300]).unwrap();
         let file = backend.library.as_ref().unwrap().0.clone();
         let bytes = fs::read(&file).unwrap();

@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stream_is_its_seed_and_its_name() {
+    fn seed_and_name_determine_a_stream() {
         let draw = |seed, name| Stream::new(seed, name).share();
         assert_eq!(draw(7, "air"), draw(7, "air"));
         assert_ne!(draw(7, "air"), draw(8, "air"));
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chance_comes_as_often_as_it_says() {
+    fn chance_is_true_with_its_probability() {
         let mut stream = Stream::new(2, "test");
         let hits = (0..10_000).filter(|_| stream.chance(0.3)).count();
         // Binomial deviation √(n p q) = 46; four of them.
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_reach_both_ends() {
+    fn whole_reaches_both_bounds() {
         let mut stream = Stream::new(3, "test");
         let draws: Vec<u32> = (0..200).map(|_| stream.whole(2, 4)).collect();
         assert!((2..=4).all(|k| draws.contains(&k)) && draws.iter().all(|k| (2..=4).contains(k)));

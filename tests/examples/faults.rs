@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use match_tests::swarm::description;
+use match_tests::swarm::report;
 use match_tests::sweep::{page, snapshot, sweep};
 
 fn main() -> ExitCode {
@@ -23,7 +23,7 @@ fn main() -> ExitCode {
     let rows = match sweep(seeds) {
         Ok(rows) => rows,
         Err((seed, found)) => {
-            eprintln!("{}", description(seed, &found));
+            eprintln!("{}", report(seed, &found));
             return ExitCode::FAILURE;
         }
     };

@@ -14,7 +14,7 @@ use std::time::Instant;
 use arena::game::header;
 use host::record::Recorder;
 use match_tests::swarm::matches::{self, Plan, Sum};
-use match_tests::swarm::{Runs, description, watch, watch_matches};
+use match_tests::swarm::{Runs, report, watch, watch_matches};
 
 fn main() -> ExitCode {
     let Some(Arguments { plan, runs, record }) = arguments(std::env::args().skip(1)) else {
@@ -53,7 +53,7 @@ fn recorded(seed: u64, stem: &Path) -> ExitCode {
         }
     };
     let outcome = matches::play(&plan, &mut recorder);
-    println!("{}", matches::description(&plan, &outcome));
+    println!("{}", matches::report(&plan, &outcome));
     match recorder.finish() {
         Ok(()) if outcome.found.is_empty() => ExitCode::SUCCESS,
         Ok(()) => ExitCode::FAILURE,
@@ -76,7 +76,7 @@ fn referee(runs: Runs) -> ExitCode {
     let begin = Instant::now();
     let ended = watch_matches(runs, |done, (plan, outcome)| {
         if !outcome.found.is_empty() {
-            println!("{}", matches::description(plan, outcome));
+            println!("{}", matches::report(plan, outcome));
         }
         if done.is_multiple_of(10) {
             eprintln!("{done} of {} matches", runs.seeds);
@@ -119,7 +119,7 @@ fn faults(runs: Runs) -> ExitCode {
         eprintln!();
     }
     for (seed, found) in broken.iter().take(SHOWN) {
-        println!("{}", description(*seed, found));
+        println!("{}", report(*seed, found));
     }
     let Runs { first, seeds, .. } = runs;
     println!(
@@ -143,13 +143,13 @@ fn faults(runs: Runs) -> ExitCode {
     if broken.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-fn arguments(mut description: impl Iterator<Item = String>) -> Option<Arguments> {
+fn arguments(mut flags: impl Iterator<Item = String>) -> Option<Arguments> {
     let jobs = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let (mut plan, mut runs, mut record) = (Which::Faults, Runs { first: 0, seeds: 100, jobs }, None);
-    while let Some(label) = description.next() {
-        let value = description.next()?;
+    while let Some(flag) = flags.next() {
+        let value = flags.next()?;
         let number = || value.parse::<u64>().ok();
-        match label.as_str() {
+        match flag.as_str() {
             "--plan" if value == "faults" => plan = Which::Faults,
             "--plan" if value == "referee" => plan = Which::Referee,
             "--seeds" => runs.seeds = number().filter(|seeds| *seeds > 0)?,

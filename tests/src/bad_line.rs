@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_good_line_changes_nothing_and_a_bad_one_does_to_bytes_as_often_as_it_is_reported() {
+    fn a_bad_line_changes_bytes_with_its_probabilities_a_good_one_none() {
         let mut line = BadLine::new(1, "line");
         let text: Vec<u8> = (0..=255).cycle().take(10_000).collect();
         let carried =

@@ -315,7 +315,7 @@ mod tests {
     const BUSY: Progress = Progress::Execute { done: 0 };
 
     #[test]
-    fn gameplays_that_overlap_too_long_are_a_violation_where_nothing_is_lost() {
+    fn without_loss_a_long_overlap_of_gameplays_is_a_violation() {
         for (air, expected) in [(Air::Lossless, true), (Air::Lossy, false)] {
             let mut watcher = watch(air);
             for ms in [0, 80, 160] {

@@ -240,7 +240,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_seed_names_one_library_and_every_kind_of_action_occurs() {
+    fn a_seed_determines_a_library_and_every_action_occurs() {
         let library = RandomLibrary::new(7, 60);
         assert_eq!(library.cases, RandomLibrary::new(7, 60).cases);
         assert_ne!(library.cases, RandomLibrary::new(8, 60).cases);

@@ -6,20 +6,18 @@
 //! or one a second time, is not among it.
 
 use brain::{BrainConfig, Station};
-use geometry::{GoalEnd, Pose, Twist, Vector};
-use host::radio::{Radio, RadioSettings, RadioSituation};
-use host::world::{BallModels, Robot as Seen, World};
+use geometry::{Field, Point, Pose};
+use host::radio::{Radio, RadioSettings};
+use match_tests::led_robot::{RUNNING, blind_sensors, drive_on, standing};
 use match_tests::swarm::guard::Guard;
-use match_tests::swarm::honest::Sayings;
+use match_tests::swarm::honest::SentPackets;
 use nrf24::{Base, Channel, Rate, Robot, Station as BaseStation};
 use nrf24_model::{Air, Chip, ChipEnable, Faults, Pause, Spi};
 use protocol::frame::TeamKey;
-use protocol::host::{Directive, HostCommand, RuleRole};
-use protocol::quantized::{WirePoint, WirePose};
-use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame};
+use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::serial::{Lines, line};
-use protocol::{Instant, RobotId, TeamId, Who};
-use rules::{Colour, League, Phase};
+use protocol::{Instant, RobotId, TeamId};
+use rules::League;
 
 const KEY: TeamKey = TeamKey([0x3c; 16]);
 const TEAM: TeamId = TeamId(1);
@@ -87,7 +85,7 @@ impl Player {
         Self { id, brain, radio, guard: Guard::new(id, 7, 0), frames: 0, believed: 0, obeyed: 0 }
     }
 
-    fn serve(&mut self, now: u64, sayings: &Sayings) {
+    fn serve(&mut self, now: u64, sent_packets: &SentPackets) {
         if !self.radio.is_due(now) {
             return;
         }
@@ -95,28 +93,18 @@ impl Player {
         self.radio.done(now, frame.is_some());
         let Some(frame) = frame else { return };
         self.frames += 1;
-        if let Some(believed) = self.guard.honest.receive(&frame, sayings) {
+        if let Some(believed) = self.guard.honest.receive(&frame, sent_packets) {
             self.believed += 1;
             self.guard.receive((now / 1_000) as u32, &believed);
         }
         self.brain.handle_packet(Instant(now), &frame);
     }
 
-    fn step(&mut self, now: u64, sayings: &mut Sayings) {
-        let health = Health { battery: Some(16.0), tipped: false, kicker_ready: true };
-        let sensors = SensorFrame {
-            pose: None,
-            ball: None,
-            opponents: heapless::Vec::new(),
-            ball_contact: false,
-            busy: false,
-            odometry: Twist::default(),
-            health,
-            camera: None,
-        };
+    fn step(&mut self, now: u64, sent_packets: &mut SentPackets) {
+        let sensors = blind_sensors();
         self.brain.handle_sensors(Instant(now), &sensors);
         while let Some(packet) = self.brain.poll_packet(Instant(now)) {
-            sayings.add(&packet);
+            sent_packets.add(&packet);
             let _room = self.radio.end.send(Instant(now), &packet).expect("a frame of this team");
             self.radio.has_news = true;
         }
@@ -145,19 +133,21 @@ fn run(loss: f32, seed: u64) -> Outcome {
     let base = Base::start(Instant(0), CHANNEL, chip.spi(), chip.chip_enable(), chip.pause());
     let mut station = Served::new(BaseStation::new(base.expect("the model")), chip);
     let mut radio = Radio::new(RadioSettings { key: KEY, ..RadioSettings::new(TEAM, 70) });
-    let (mut host_lines, mut sayings) = (Lines::new(), Sayings::default());
+    let (mut host_lines, mut sent_packets) = (Lines::new(), SentPackets::default());
     for now in (0..DURATION).step_by(STEP as usize) {
         air.advance(now * 1_000);
         let at = Instant(now);
         if now % TICK == 0 {
-            radio.offer(at, &field(at, &players), SITUATION, &commands(&players));
+            let world = standing(at, players.iter().map(|player| (player.id, place(player.id))));
+            let commands: Vec<_> = players.iter().map(|player| drive_on(player.id)).collect();
+            radio.offer(at, &world, RUNNING, &commands);
             for player in &mut players {
-                player.step(now, &mut sayings);
+                player.step(now, &mut sent_packets);
             }
         }
         radio.handle_timeout(at);
         while let Some((_, packet)) = radio.poll_packet() {
-            sayings.add(&packet);
+            sent_packets.add(&packet);
             station.end.push(at, &line(&packet));
             station.has_news = true;
         }
@@ -170,7 +160,7 @@ fn run(loss: f32, seed: u64) -> Outcome {
             }
         }
         for player in &mut players {
-            player.serve(now, &sayings);
+            player.serve(now, &sent_packets);
         }
     }
     assert_eq!(station.end.refused(), 0, "the host's line is whole");
@@ -183,40 +173,13 @@ fn run(loss: f32, seed: u64) -> Outcome {
     }
 }
 
-const SITUATION: RadioSituation = RadioSituation { us: Colour::Blue, phase: Phase::Run, placement: None };
-
-/// Everyone is to go where it never arrives.
-fn commands(players: &[Player]) -> Vec<HostCommand> {
-    let pose = WirePose { at: WirePoint { x: 3_000, y: 0 }, heading: 0 };
-    let to = |player: &Player| HostCommand {
-        to: player.id,
-        defending: GoalEnd::Negative,
-        phase: Phase::Run,
-        rule_role: RuleRole::Player,
-        directive: Directive::GoTo { pose },
-    };
-    players.iter().map(to).collect()
-}
-
-/// They stand in a row, 1 m apart.
-fn field(now: Instant, players: &[Player]) -> World {
-    let mut world = World::empty(now, BallModels::default());
-    for player in players {
-        let y = f32::from(player.id.number()) - 2.5;
-        world.put(Seen {
-            who: Who { colour: Colour::Blue, id: player.id },
-            pose: Pose { position: geometry::Point::new(-2.0, y), ..Pose::default() },
-            velocity: Vector::default(),
-            angular: 0.0,
-            confidence: 1.0,
-            seen: now,
-        });
-    }
-    world
+/// In a row, 1 m apart.
+fn place(id: RobotId) -> Pose<Field> {
+    Pose { position: Point::new(-2.0, f32::from(id.number()) - 2.5), ..Pose::default() }
 }
 
 #[test]
-fn six_brains_behind_lossy_air_obey_their_host_and_are_heard() {
+fn six_brains_behind_lossy_nrf24_radios_obey_and_are_received() {
     for (loss, seed) in [(0.0, 1), (0.1, 2), (0.2, 3), (0.3, 4)] {
         let Outcome { obeyed, present, frames, believed } = run(loss, seed);
         println!(

@@ -14,7 +14,7 @@ use hil_sim::{
     Simulation, SimulationConfig, Stream, TICK_US,
 };
 use match_tests::invariants::{Air, RECOVER_WITHIN, Seen, Watcher};
-use match_tests::swarm::honest::{Believed, Honest, Sayings};
+use match_tests::swarm::honest::{Believed, Honest, SentPackets};
 use protocol::frame::TeamKey;
 use protocol::link::overhear;
 use protocol::team::TeamMessage;
@@ -37,7 +37,7 @@ fn without_loss_gameplays_do_not_overlap() {
 }
 
 #[test]
-fn under_loss_robots_leave_an_old_gameplay_when_they_receive_of_a_newer_one() {
+fn under_loss_robots_leave_a_gameplay_for_a_newer_one() {
     let counters = for_each_seed(|seed| {
         let air = AirSettings {
             loss: 0.3,
@@ -75,7 +75,7 @@ fn a_robot_may_crash_and_return_while_packets_are_lost() {
 }
 
 #[test]
-fn halves_of_a_partition_are_one_team_again_within_a_second_of_healing() {
+fn partitions_unite_within_a_second_of_healing() {
     for_each_seed(|seed| {
         let team = Team::drawn(seed);
         let mut chance = Stream::new(seed, "partition");
@@ -228,7 +228,7 @@ fn report(watcher: &Watcher) -> Result<Counters, String> {
 struct Observer {
     watcher: Watcher,
     /// All packets sent so far.
-    sayings: Sayings,
+    sent_packets: SentPackets,
     /// Each robot as a receiver, with its epoch.
     receivers: BTreeMap<RobotId, (u32, Honest)>,
 }
@@ -237,7 +237,7 @@ impl Observer {
     fn new(kind: Air, team: &Team) -> Self {
         let epoch = BrainConfig::new(RobotId::ZERO, TEAM).epoch;
         let receivers = team.ids.iter().map(|&id| (id, (epoch, Honest::new(id, epoch)))).collect();
-        Self { watcher: Watcher::new(kind), sayings: Sayings::default(), receivers }
+        Self { watcher: Watcher::new(kind), sent_packets: SentPackets::default(), receivers }
     }
 
     /// One tick of the trial.
@@ -264,13 +264,14 @@ impl Observer {
         }
         for received in &tick.received {
             let receiver = self.receivers.get_mut(&received.to);
-            let believed = receiver.and_then(|(_, robot)| robot.receive(&received.packet, &self.sayings));
+            let believed =
+                receiver.and_then(|(_, robot)| robot.receive(&received.packet, &self.sent_packets));
             if let Some(Believed::Teammate(from, TeamMessage::Beacon(beacon))) = believed {
                 self.watcher.see(now, &Seen::Received(received.to, from, beacon));
             }
         }
         for sent in &tick.sent {
-            self.sayings.add(&sent.packet);
+            self.sent_packets.add(&sent.packet);
             if let Ok((from, TeamMessage::Beacon(beacon))) =
                 overhear(&sent.packet, TEAM, &TeamKey::ZERO.of_team())
             {

@@ -27,7 +27,7 @@ fn division_b() -> Library {
 }
 
 #[test]
-fn it_has_gameplays_for_two_and_three_robots_in_every_region_and_lint_finds_nothing() {
+fn every_region_has_gameplays_for_two_and_three_robots_without_warnings() {
     let library = division_b();
     let authored = library.cases.len() / 4;
     assert!(authored >= AUTHORED_MIN, "{authored} cases");
@@ -52,7 +52,7 @@ fn every_case_in_every_symmetry_is_retrieved_from_its_own_situation() {
 }
 
 #[test]
-fn no_one_plays_the_ball_in_their_defence_area_or_dribbles_for_a_metre() {
+fn cases_do_not_play_in_the_opponents_area_or_dribble_a_metre() {
     for case in division_b().cases {
         let attack = case.defending.attack();
         let in_their_area = |at: Point| at.x * attack > 3500 && at.y.abs() < 1000;

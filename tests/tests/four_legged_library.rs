@@ -45,7 +45,7 @@ fn drawn() -> impl Iterator<Item = Problem> {
 }
 
 #[test]
-fn every_region_has_cases_for_one_robot_and_for_two_and_every_class_of_opponents_is_there() {
+fn every_region_has_cases_for_one_and_two_robots_and_all_opponent_classes() {
     let library = four_legged();
     assert_eq!(library.cases.len(), 4 * AUTHORED);
     let mut classes = BTreeSet::new();
@@ -112,7 +112,7 @@ fn a_robot_behind_a_ball_that_no_one_blocks_has_a_case_on_95_percent_of_the_fiel
 }
 
 #[test]
-fn nearly_every_drawn_problem_has_a_case_and_every_case_wins_some_but_none_a_tenth() {
+fn nearly_every_random_problem_has_a_case_and_no_case_wins_a_tenth() {
     let library = four_legged();
     let mut wins: BTreeMap<&str, u64> = library.cases.iter().map(|case| (case.name.as_str(), 0)).collect();
     for problem in drawn() {

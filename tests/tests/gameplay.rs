@@ -4,6 +4,8 @@
 //! Brains in an ideal world where failures come from the tests alone; the library is the worked example of
 //! docs/case-format.md §1 alone.
 
+use std::sync::LazyLock;
+
 use brain::{BrainConfig, Positioning};
 use case_tools::{Files, Library};
 use geometry::{Point, Pose};
@@ -14,8 +16,7 @@ use protocol::{RobotId, TeamId};
 
 #[test]
 fn a_booting_robot_listens_for_one_lease_before_it_proposes() {
-    let library = library();
-    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+    let mut table = table(&[1, 3], Positioning::Dependent);
     assert!(table.until(1.0, |t| cycle(t, 1).is_some()));
     assert!(table.now().0 > 400_000, "proposed after {} us", table.now().0);
     let proposed = cycle(&mut table, 1).unwrap();
@@ -25,8 +26,7 @@ fn a_booting_robot_listens_for_one_lease_before_it_proposes() {
 
 #[test]
 fn a_pass_is_played_from_its_election_to_its_end() {
-    let library = library();
-    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+    let mut table = table(&[1, 3], Positioning::Dependent);
     assert!(
         table.until(2.0, |t| play(t, 3).is_some_and(|robots| robots == [1, 3])),
         "robot 3 is told its part"
@@ -51,10 +51,9 @@ fn a_pass_is_played_from_its_election_to_its_end() {
 }
 
 #[test]
-fn independent_positioning_waits_for_everyone() {
-    let library = library();
+fn independent_positioning_waits_until_all_have_arrived() {
     for (positioning, waits) in [(Positioning::Dependent, false), (Positioning::Independent, true)] {
-        let mut table = table(&library, &[1, 3], positioning);
+        let mut table = table(&[1, 3], positioning);
         // Robot 3 starts a metre from its place.
         table.robot(3).pose.position = Point::new(0.3, -0.1);
         let arrived =
@@ -68,52 +67,38 @@ fn independent_positioning_waits_for_everyone() {
 }
 
 #[test]
-fn a_ball_that_leaves_the_scope_before_the_first_touch_ends_the_cycle() {
+fn before_the_first_touch_ball_opponent_and_silent_robot_end_the_cycle() {
     assert_eq!(aborted_after(|table| table.ball = Point::new(-0.6, 0.6)), AbortReason::BallOutOfScope);
-}
-
-#[test]
-fn an_opponent_in_the_balls_path_before_the_first_touch_ends_the_cycle() {
     assert_eq!(aborted_after(|table| table.opponents.push(Point::new(-0.2, 0.45))), AbortReason::PathBlocked);
-}
-
-#[test]
-fn a_robot_that_falls_silent_ends_the_cycle_after_its_lease() {
     assert_eq!(aborted_after(|table| table.robot(3).dead = true), AbortReason::RobotLost);
 }
 
 #[test]
-fn a_passer_robbed_of_the_ball_ends_the_cycle() {
-    let library = library();
-    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+fn a_passer_that_loses_the_ball_ends_the_cycle() {
+    let mut table = table(&[1, 3], Positioning::Dependent);
     assert!(table.until(8.0, |t| t.robot(1).holds));
     table.until(0.1, |_| false);
     table.robot(1).holds = false;
     table.ball = Point::new(-0.3, -0.3);
-    let end = |t: &mut Tabletop| {
-        matches!(closure(t), Some(Closure::Aborted { reason: AbortReason::ActionFailed, .. }))
-    };
-    assert!(table.until(0.2, end), "{:?}", cycle(&mut table, 3));
+    let failed = table.until(0.2, |t| abort_reason(t) == Some(AbortReason::ActionFailed));
+    assert!(failed, "{:?}", cycle(&mut table, 3));
 }
 
 #[test]
 fn a_gameplay_that_cannot_go_on_times_out() {
-    let library = library();
-    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+    let mut table = table(&[1, 3], Positioning::Dependent);
     assert!(table.until(1.0, |t| play(t, 1).is_some()));
     // The getter cannot move; everything else is unchanged.
     let place = Pose::from_mm_deg(-1100.0, 0.0, 0.0);
-    let timeout = |t: &mut Tabletop| {
+    assert!(table.until(30.0, |t| {
         t.robot(1).pose = place;
-        matches!(closure(t), Some(Closure::Aborted { reason: AbortReason::Timeout, .. }))
-    };
-    assert!(table.until(30.0, timeout));
+        abort_reason(t) == Some(AbortReason::Timeout)
+    }));
 }
 
 #[test]
-fn without_a_case_robots_play_reactively_and_try_again() {
-    let library = library();
-    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+fn without_a_case_robots_play_reactively_and_retrieve_again() {
+    let mut table = table(&[1, 3], Positioning::Dependent);
     table.ball = Point::new(1.5, -1.0);
     assert!(table.until(1.0, |t| cycle(t, 3).is_some_and(|c| c.decision == Decision::NoCase)));
     table.until(0.1, |_| false);
@@ -131,8 +116,7 @@ fn without_a_case_robots_play_reactively_and_try_again() {
 
 #[test]
 fn a_robot_that_is_not_involved_waits_for_the_end() {
-    let library = library();
-    let mut table = table(&library, &[1, 3, 5], Positioning::Dependent);
+    let mut table = table(&[1, 3, 5], Positioning::Dependent);
     assert!(table.until(2.0, |t| play(t, 5).is_some()));
     assert_eq!(progress(&mut table, 5), Progress::WaitEnd { finished: false });
     let mut nearest = f32::INFINITY;
@@ -144,9 +128,9 @@ fn a_robot_that_is_not_involved_waits_for_the_end() {
 }
 
 #[test]
-fn a_robot_without_the_coordinators_case_base_is_not_asked_to_play() {
-    let (library, other) = (library(), other_library());
-    let mut table = table(&library, &[1, 3, 5], Positioning::Dependent);
+fn a_robot_with_another_case_base_gets_no_part() {
+    let other = other_library();
+    let mut table = table(&[1, 3, 5], Positioning::Dependent);
     let config = config(3, Positioning::Dependent);
     table.robot(3).brain = brain::Brain::new(table.now(), &config, other.base());
     assert!(table.until(2.0, |t| play(t, 1).is_some()));
@@ -156,23 +140,14 @@ fn a_robot_without_the_coordinators_case_base_is_not_asked_to_play() {
 /// Lets a gameplay start, applies `harm` while its robots adapt, and returns the reason for which the cycle
 /// ends.
 fn aborted_after(harm: impl FnOnce(&mut Tabletop<'_>)) -> AbortReason {
-    let library = library();
-    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+    let mut table = table(&[1, 3], Positioning::Dependent);
     assert!(table.until(1.0, |t| play(t, 1).is_some()));
     harm(&mut table);
-    let mut reason = None;
-    table.until(1.0, |t| {
-        if let Some(Closure::Aborted { reason: why, .. }) = closure(t) {
-            reason = Some(why);
-        }
-        reason.is_some()
-    });
-    reason.expect("the cycle is aborted within a second")
+    table.until(1.0, |t| abort_reason(t).is_some());
+    abort_reason(&table).expect("the cycle is aborted within a second")
 }
 
-fn library() -> Library {
-    library_of(&pass_and_shot())
-}
+static LIBRARY: LazyLock<Library> = LazyLock::new(|| library_of(&pass_and_shot()));
 
 fn library_of(case: &str) -> Library {
     // The shot is longer than the body's hardest kick: it is kicked all the same.
@@ -198,14 +173,14 @@ fn config(id: u8, positioning: Positioning) -> BrainConfig {
 }
 
 /// Robot 1 half a metre behind its place, robot 3 near its own, others at the back.
-fn table<'a>(library: &'a Library, ids: &[u8], positioning: Positioning) -> Tabletop<'a> {
+fn table<'a>(ids: &[u8], positioning: Positioning) -> Tabletop<'a> {
     let pose = |id| match id {
         1 => Pose::from_mm_deg(-1200.0, 0.0, 0.0),
         3 => Pose::from_mm_deg(200.0, 800.0, -135.0),
         _ => Pose::from_mm_deg(-600.0, 1200.0, 0.0),
     };
     let robots: Vec<_> = ids.iter().map(|&id| (config(id, positioning), pose(id))).collect();
-    let mut table = Tabletop::new(library.base(), (-0.6, 0.0), &robots);
+    let mut table = Tabletop::new(LIBRARY.base(), (-0.6, 0.0), &robots);
     table.opponents.push(Point::new(-0.15, -0.1));
     table
 }
@@ -222,6 +197,14 @@ fn play(table: &mut Tabletop<'_>, robot: u8) -> Option<Vec<u8>> {
 /// The end of the newest cycle that ended.
 fn closure(table: &Tabletop<'_>) -> Option<Closure> {
     table.ends.last().map(|(_, end)| *end)
+}
+
+/// The reason for which the newest cycle was aborted, if it was.
+fn abort_reason(table: &Tabletop<'_>) -> Option<AbortReason> {
+    match closure(table) {
+        Some(Closure::Aborted { reason, .. }) => Some(reason),
+        _ => None,
+    }
 }
 
 fn progress(table: &mut Tabletop<'_>, robot: u8) -> Progress {

@@ -4,7 +4,7 @@
 use match_tests::hostile::{corpus, run};
 
 #[test]
-fn of_two_hundred_thousand_byte_strings_none_brings_a_reader_or_a_brain_down() {
+fn no_reader_or_brain_panics_on_200_000_byte_strings() {
     let corpus = corpus().expect("the committed corpus");
     for seed in 0..4 {
         if let Err(panicked) = run(&corpus, seed, 50_000) {
@@ -14,7 +14,7 @@ fn of_two_hundred_thousand_byte_strings_none_brings_a_reader_or_a_brain_down() {
 }
 
 #[test]
-fn every_target_has_true_messages_to_begin_with_and_every_worked_example_is_one_of_them() {
+fn every_fuzz_target_has_seeds_with_all_worked_examples() {
     let corpus = corpus().expect("the committed corpus");
     assert!(corpus.iter().all(|(_, seeds)| !seeds.is_empty()));
     let all: Vec<&Vec<u8>> = corpus.iter().flat_map(|(_, seeds)| seeds).collect();

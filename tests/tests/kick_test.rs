@@ -74,7 +74,7 @@ fn median(mut values: Vec<f32>) -> f32 {
 }
 
 #[test]
-fn the_fitted_gain_is_that_of_the_kicker_and_with_it_balls_leave_as_fast_as_ordered() {
+fn the_fitted_gain_is_the_kickers_and_corrects_its_speed() {
     let mut backend = NativeBackend::new(CaseBase::default());
     let mut game = game(&mut backend);
     let truth = game.world().robot(tested()).expect("it plays").traits().kick_gain;
@@ -98,7 +98,7 @@ fn the_fitted_gain_is_that_of_the_kicker_and_with_it_balls_leave_as_fast_as_orde
 }
 
 #[test]
-fn halt_stops_a_test_and_a_trace_gives_it_again() {
+fn halt_stops_a_kick_test_and_a_trace_repeats_it() {
     let stem = Path::new(env!("CARGO_TARGET_TMPDIR")).join("kick-test");
     let mut backend = NativeBackend::new(CaseBase::default());
     let mut game = game(&mut backend);

@@ -84,7 +84,7 @@ fn speed_and_acceleration_limits_slow_the_team_that_sets_them() {
 }
 
 #[test]
-fn a_kicker_said_to_kick_twice_as_hard_is_ordered_half_the_speed() {
+fn a_kick_gain_of_2_halves_the_ordered_speed() {
     let usual = blue_and_yellow(120.0, &[]);
     let kicks: Vec<String> =
         (0..6).map(|n| format!(r#"{{"key":"calibration.kick","robot":{n},"value":2.0}}"#)).collect();
@@ -99,7 +99,7 @@ fn a_kicker_said_to_kick_twice_as_hard_is_ordered_half_the_speed() {
 }
 
 #[test]
-fn a_trace_has_the_changes_and_gives_the_same_packets_again() {
+fn replaying_a_trace_repeats_parameter_changes_and_packets() {
     let config = GameConfig::new(League::DivisionB, 4, 10.0);
     let stem = Path::new(env!("CARGO_TARGET_TMPDIR")).join("parameters");
     let mut recorder = Recorder::begin(&stem, &header("test", "test", &config)).expect("a recording");

@@ -71,7 +71,7 @@ fn the_table_of_played_cases_lists_every_case_against_both_kinds_of_opponents() 
 }
 
 #[test]
-fn rows_of_the_table_come_out_again() {
+fn rows_of_the_table_are_read_as_written() {
     for table in &TABLES {
         let (file, names, again) = (table.file(), table.names(), table.again());
         let case_trial = CaseTrial {
@@ -96,7 +96,7 @@ fn rows_of_the_table_come_out_again() {
 }
 
 #[test]
-fn a_case_completed_by_less_than_sixty_in_a_hundred_says_why_in_its_file() {
+fn a_case_completed_in_less_than_60_percent_explains_it_in_its_file() {
     let four_legged = &TABLES[0];
     let file = four_legged.file();
     let league = case_library::league(four_legged.league.name()).expect("built in");

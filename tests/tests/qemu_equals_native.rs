@@ -39,7 +39,7 @@ fn native_equals_qemu() {
 }
 
 #[test]
-fn native_equals_qemu_when_packets_are_lost_and_a_robot_dies_and_returns() {
+fn native_equals_qemu_under_loss_and_a_reboot() {
     let mut meter = Meter::default();
     let robot = RobotId::new(1).expect("an id");
     for seed in 1..=3 {
@@ -74,7 +74,7 @@ fn native_equals_qemu_with_the_robots_perception() {
 }
 
 #[test]
-fn a_library_put_into_flash_is_the_one_that_is_played() {
+fn a_library_in_flash_replaces_the_built_in_one() {
     let directory = Directory::with(&["league.toml", "center/pass-around.toml", "front/shot.toml"]);
     let library = case_tools::load(&directory.0).unwrap_or_else(|findings| panic!("{findings:?}"));
     let built_in = TrialConfig::new(Scenario::MiddleBack, Configuration::TwoDefenders, Approach::Cases, 5);
@@ -87,7 +87,7 @@ fn a_library_put_into_flash_is_the_one_that_is_played() {
 }
 
 #[test]
-fn a_library_that_is_none_is_refused() {
+fn an_invalid_library_is_refused() {
     let mut backend = QemuBackend::new(&*IMAGE).with_library(&[7; 100]).expect("room for it");
     let config = BrainConfig::new(RobotId::new(1).expect("an id"), TeamId(0));
     assert!(matches!(backend.boot(&config), Err(McuError::Unusable)));

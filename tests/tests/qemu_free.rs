@@ -43,7 +43,7 @@ const PATIENCE: Duration = Duration::from_mins(1);
 const SPEAKS_EVERY: Duration = Duration::from_millis(20);
 
 #[test]
-fn a_robot_obeys_its_own_host_while_it_speaks_and_no_one_elses() {
+fn a_robot_obeys_only_its_own_host_and_only_while_it_sends() {
     let mut robot = Robot::start(Some(&PAGE), 0);
     robot.wait_for_line("robot: ready");
     let mut ours = HostLink::new(TEAM, key(), 7);
@@ -64,7 +64,7 @@ fn a_robot_obeys_its_own_host_while_it_speaks_and_no_one_elses() {
 }
 
 #[test]
-fn a_serial_line_that_corrupts_bytes_makes_a_robot_brake_at_worst_and_it_obeys_again_when_the_line_is_good() {
+fn on_a_corrupting_serial_line_a_robot_brakes_and_later_obeys_again() {
     let mut robot = Robot::start(Some(&PAGE), 0);
     robot.wait_for_line("ready");
     let mut link = HostLink::new(TEAM, key(), 7);
@@ -86,17 +86,17 @@ fn a_serial_line_that_corrupts_bytes_makes_a_robot_brake_at_worst_and_it_obeys_a
 }
 
 #[test]
-fn a_robot_without_a_key_or_with_a_damaged_page_says_nothing_on_the_air() {
-    for (page, description) in [(None, "no page"), (Some(damaged()), "a damaged page")] {
+fn a_robot_without_a_valid_key_page_sends_nothing() {
+    for (page, expected) in [(None, "no page"), (Some(damaged()), "a damaged page")] {
         let mut robot = Robot::start(page.as_ref(), 0);
-        robot.wait_for_line(description);
+        robot.wait_for_line(expected);
         thread::sleep(Duration::from_millis(500));
         assert!(robot.received.try_recv().is_err(), "it speaks");
     }
 }
 
 #[test]
-fn a_panic_takes_the_current_off_reports_its_place_and_starts_again_in_a_new_life() {
+fn a_panic_cuts_motor_power_prints_its_place_and_reboots() {
     let mut robot = Robot::start(Some(&PAGE), 1);
     robot.wait_for_line("trial.rs");
     robot.wait_for_line("motors off, restarting");
@@ -117,7 +117,7 @@ fn a_panic_takes_the_current_off_reports_its_place_and_starts_again_in_a_new_lif
 }
 
 #[test]
-fn a_task_that_hangs_is_ended_by_the_watchdog() {
+fn the_watchdog_reboots_a_robot_with_a_hanging_task() {
     let mut robot = Robot::start(Some(&PAGE), 2);
     robot.wait_for_line("watchdog: a task hangs; motors off");
     robot.wait_for_line("awake after the watchdog's bite");
@@ -200,13 +200,13 @@ impl Robot {
     }
 
     /// Waits for a text on the console.
-    fn wait_for_line(&mut self, description: &str) {
+    fn wait_for_line(&mut self, expected: &str) {
         let began = Instant::now();
-        while !self.output.contains(description) {
+        while !self.output.contains(expected) {
             if let Ok(more) = self.console.recv_timeout(Duration::from_millis(100)) {
                 self.output += &String::from_utf8_lossy(&more);
             }
-            assert!(began.elapsed() < PATIENCE, "`{description}` was not said: {}", self.output);
+            assert!(began.elapsed() < PATIENCE, "`{expected}` was not said: {}", self.output);
         }
     }
 

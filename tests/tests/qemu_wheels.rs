@@ -36,7 +36,7 @@ const STACK_BUDGET: u32 = firmware_build::inspect::STACK_BUDGET;
 const SECONDS: u64 = 6;
 
 #[test]
-fn wheels_under_qemu_equal_native_ones_and_no_step_takes_more_than_its_budget() {
+fn wheeled_robots_under_qemu_equal_native_within_the_step_budget() {
     let base = case_library::division_b();
     let mut table = Table::new();
     let mut native = NativeBackend::new(base);

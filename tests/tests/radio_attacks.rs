@@ -5,17 +5,15 @@
 use std::collections::VecDeque;
 
 use brain::{BrainConfig, Station};
-use geometry::{GoalEnd, Pose, Twist, Vector};
+use geometry::{Pose, Twist, Vector};
 use hil_sim::Stream;
-use host::radio::{Radio, RadioSettings, RadioSituation, RadioWarning, Relay};
-use host::world::{BallModels, Robot, World};
+use host::radio::{Radio, RadioSettings, RadioWarning, Relay};
+use match_tests::led_robot::{RUNNING, blind_sensors, drive_on, standing};
 use protocol::frame::{Frame, Refusal, RobotKeys, TeamKey};
-use protocol::host::{Directive, HostCommand, RuleRole};
 use protocol::link::Packet;
-use protocol::quantized::{WirePoint, WirePose};
-use protocol::robot_io::{ActuatorFrame, Health, SensorFrame};
-use protocol::{Duration, Instant, RobotId, TeamId, Who};
-use rules::{Colour, League, Phase};
+use protocol::robot_io::{ActuatorFrame, SensorFrame};
+use protocol::{Duration, Instant, RobotId, TeamId};
+use rules::League;
 
 const KEY: TeamKey = TeamKey([0x3c; 16]);
 const TEAM: TeamId = TeamId(1);
@@ -94,16 +92,7 @@ impl Body {
             self.station.handle_packet(clock, packet);
         }
         let odometry = Twist { linear: Vector::new(self.speed, 0.0), angular: 0.0 };
-        let sensors = SensorFrame {
-            pose: None,
-            ball: None,
-            opponents: heapless::Vec::new(),
-            ball_contact: false,
-            busy: false,
-            odometry,
-            health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
-            camera: None,
-        };
+        let sensors = SensorFrame { odometry, ..blind_sensors() };
         self.station.handle_sensors(clock, &sensors);
         let output = std::iter::from_fn(|| self.station.poll_packet(clock)).collect();
         self.speed = match self.station.poll_actuators(clock) {
@@ -123,23 +112,8 @@ impl Body {
 
 /// A command to drive to a position that is never reached.
 fn offer(radio: &mut Radio, now: u64) -> Vec<Packet> {
-    let mut world = World::empty(ms(now), BallModels::default());
-    world.put(Robot {
-        who: Who { colour: Colour::Blue, id: id() },
-        pose: Pose::default(),
-        velocity: Vector::default(),
-        angular: 0.0,
-        confidence: 1.0,
-        seen: ms(now),
-    });
-    let directive = Directive::GoTo { pose: WirePose { at: WirePoint { x: 3_000, y: 0 }, heading: 0 } };
-    let (defending, phase, rule_role) = (GoalEnd::Negative, Phase::Run, RuleRole::Player);
-    let command = HostCommand { to: id(), defending, phase, rule_role, directive };
-    radio.offer(ms(now), &world, RadioSituation { us: Colour::Blue, phase, placement: None }, &[command]);
-    fetch(radio)
-}
-
-fn fetch(radio: &mut Radio) -> Vec<Packet> {
+    let world = standing(ms(now), [(id(), Pose::default())]);
+    radio.offer(ms(now), &world, RUNNING, &[drive_on(id())]);
     std::iter::from_fn(|| radio.poll_packet()).map(|(_, packet)| packet).collect()
 }
 
@@ -211,7 +185,7 @@ fn withheld_frames_of_a_dead_host_neither_start_nor_keep_a_robot() {
 }
 
 #[test]
-fn frames_that_come_ever_later_stop_a_driving_robot_within_200_ms_of_age() {
+fn ever_later_frames_stop_a_robot_at_an_age_of_200_ms() {
     // The attacker delivers in slow motion: every frame arrives, without a gap, but each a little later than
     // the last.
     for stretch in [2, 3, 5] {
@@ -248,7 +222,7 @@ fn frames_that_come_ever_later_stop_a_driving_robot_within_200_ms_of_age() {
 }
 
 #[test]
-fn a_host_that_dies_stops_its_robot_as_before_100_ms_after_the_last_frame() {
+fn a_dead_host_stops_its_robot_100_ms_after_the_last_frame() {
     let mut game = Match::new(Body::new(5), (3, 3), 0.0);
     game.drive();
     let (died, driving) = (game.now, game.body.speed);
@@ -264,7 +238,7 @@ fn a_host_that_dies_stops_its_robot_as_before_100_ms_after_the_last_frame() {
 }
 
 #[test]
-fn sixty_milliseconds_each_way_a_third_lost_and_clocks_that_drift_apart_do_not_stop_a_robot() {
+fn latency_of_60_ms_loss_of_30_percent_and_clock_drift_stop_no_robot() {
     for (drift_ppm, latency) in [(0.0, (60, 60)), (200.0, (60, 60)), (-200.0, (60, 60)), (100.0, (3, 60))] {
         let mut game = Match::new(Body::with(5, 9_000, drift_ppm), latency, 0.3);
         (0..300).for_each(|_| game.step(true));
@@ -297,7 +271,7 @@ fn sixty_milliseconds_each_way_a_third_lost_and_clocks_that_drift_apart_do_not_s
 }
 
 #[test]
-fn a_host_with_an_earlier_epoch_is_reported_within_two_seconds_which_robot_refuses_it() {
+fn the_robot_that_refuses_an_earlier_host_epoch_is_named_within_2_s() {
     let mut game = Match::new(Body::new(5), (3, 3), 0.0);
     game.drive();
     // The second computer's clock is behind.
@@ -309,7 +283,7 @@ fn a_host_with_an_earlier_epoch_is_reported_within_two_seconds_which_robot_refus
         reported = reported
             .or_else(|| game.radio.warnings(ms(game.now)).next().map(|warning| (game.now - start, warning)));
     }
-    let (after, warning) = reported.expect("told");
+    let (after, warning) = reported.expect("a warning within 3 s");
     assert_eq!(warning, RadioWarning::LaterHost(id(), 70));
     assert!(after <= 2_000, "{after} ms");
     assert_eq!((game.radio.present(ms(game.now)).count(), game.body.speed), (0, 0.0));
@@ -321,7 +295,7 @@ fn a_host_with_an_earlier_epoch_is_reported_within_two_seconds_which_robot_refus
 }
 
 #[test]
-fn a_robot_with_another_key_is_reported_of_within_two_seconds() {
+fn a_robot_with_a_foreign_key_is_named_within_2_s() {
     let mut game = Match::new(Body::new(5), (3, 3), 0.0);
     game.radio = Radio::new(RadioSettings { key: TeamKey([9; 16]), ..RadioSettings::new(TEAM, 70) });
     (0..200).for_each(|_| game.step(true));
@@ -331,7 +305,7 @@ fn a_robot_with_another_key_is_reported_of_within_two_seconds() {
 }
 
 #[test]
-fn the_keys_of_a_stolen_robot_move_no_other_robot_and_keep_none_moving() {
+fn a_stolen_robots_keys_control_no_other_robot() {
     let mut game = Match::new(Body::new(5), (3, 3), 0.0);
     game.drive();
     let genuine = offer(&mut game.radio, game.now + TICK_MS);
@@ -362,7 +336,7 @@ fn the_keys_of_a_stolen_robot_move_no_other_robot_and_keep_none_moving() {
 }
 
 #[test]
-fn a_robot_that_comes_back_is_led_again_and_its_old_frames_are_not_believed() {
+fn a_rebooted_robot_is_commanded_again_and_its_old_frames_refused() {
     let mut game = Match::new(Body::new(5), (3, 3), 0.0);
     game.drive();
     let mut recorded = Vec::new();

@@ -40,14 +40,14 @@ fn the_built_in_library_is_answered_as_the_oracle_answers() {
 }
 
 #[test]
-fn the_built_in_library_leaves_the_lint_nothing_to_say() {
+fn the_built_in_library_has_no_warnings() {
     let trial = Trial::of_directory(1, &four_legged_directory());
     let findings: Vec<String> = trial.table.findings.iter().map(ToString::to_string).collect();
     assert!(findings.is_empty(), "{}", findings.join("\n"));
 }
 
 #[test]
-fn settings_change_the_answers_as_the_agreement_says() {
+fn settings_change_the_answers_as_documented() {
     let trial = Trial::of_random_library(11, 80);
     let default = Rules::default;
     let (conditions, teammates, cost) =
@@ -79,7 +79,7 @@ fn settings_change_the_answers_as_the_agreement_says() {
 }
 
 #[test]
-fn every_authored_case_in_all_four_symmetries_retrieves_itself_from_its_own_situation() {
+fn every_case_in_all_symmetries_retrieves_itself_in_its_own_situation() {
     let trial = Trial::of_directory(1, &four_legged_directory());
     for (id, case) in trial.oracle.cases.iter().enumerate() {
         let problem = Problem::own_situation(case);

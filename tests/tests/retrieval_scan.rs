@@ -9,6 +9,6 @@ mod bases;
 mod verify;
 
 #[test]
-fn a_thousand_problems_and_more_are_answered_as_a_plain_scan_answers_them() {
+fn retrieval_answers_1000_problems_as_a_plain_scan_does() {
     verify::run([2_000, 2_000, 1_000, 200]).unwrap();
 }

@@ -66,7 +66,7 @@ fn the_leagues_files_have_the_robot_of_the_reference_description() {
 }
 
 #[test]
-fn simulated_robots_have_the_shape_that_ours_are_described_with() {
+fn simulated_robots_have_the_described_shape() {
     let near = |a: f32, b: f32| (a - b).abs() < 1e-4 * a.abs().max(1.0);
     for (league, world) in simulated() {
         let (body, HullSpec { radius, front, .. }) = (world.robot, OURS.hull);
@@ -81,7 +81,7 @@ fn simulated_robots_have_the_shape_that_ours_are_described_with() {
 }
 
 #[test]
-fn plans_ask_for_no_more_than_simulated_wheels_and_kickers_give() {
+fn plans_stay_within_what_simulated_wheels_and_kickers_can_do() {
     // Rounding of a ratio.
     let most = |limit: f32| limit * 1.000_01;
     for (league, world) in simulated() {

@@ -70,7 +70,7 @@ fn every_rule_has_one_row_with_every_cell_filled() {
 }
 
 #[test]
-fn every_place_and_every_test_it_names_is_in_the_tree() {
+fn every_file_and_test_named_in_the_rules_table_exists() {
     for row in rows() {
         assert!(!pointers(&row[4]).is_empty(), "{}: no test is named", row[0]);
         for (file, item) in pointers(&row[3]).into_iter().chain(pointers(&row[4])) {

@@ -3,14 +3,14 @@
 
 use arena::game::NoWatcher;
 use match_tests::swarm::matches::{self, LENGTH, Plan};
-use match_tests::swarm::{Runs, description, run, watch};
+use match_tests::swarm::{Runs, report, run, watch};
 
 const SEEDS: u64 = 100;
 
 #[test]
-fn a_hundred_runs_with_faults_of_their_own_keep_every_promise() {
+fn a_hundred_random_fault_runs_violate_no_property() {
     let (counters, broken) = watch(Runs { first: 0, seeds: SEEDS, jobs: 2 }, |_| {});
-    let reported: Vec<String> = broken.iter().map(|(seed, found)| description(*seed, found)).collect();
+    let reported: Vec<String> = broken.iter().map(|(seed, found)| report(*seed, found)).collect();
     assert!(reported.is_empty(), "\n{}", reported.join("\n"));
     assert_eq!(u64::from(counters.runs), SEEDS);
     // The runs are not trivial: teams play, forged packets are sent, robots brake.
@@ -26,12 +26,12 @@ fn a_seed_gives_the_same_run_on_any_number_of_threads() {
 }
 
 #[test]
-fn matches_with_cards_restarts_and_halts_keep_every_promise() {
+fn matches_with_cards_restarts_and_halts_violate_no_property() {
     // One of each division.
     for seed in [4, 7] {
         let plan = Plan::drawn(seed, LENGTH);
         let outcome = matches::play(&plan, &mut NoWatcher);
-        assert!(outcome.found.is_empty(), "\n{}", matches::description(&plan, &outcome));
+        assert!(outcome.found.is_empty(), "\n{}", matches::report(&plan, &outcome));
         // The match is not trivial.
         assert!(outcome.acts > 1 && outcome.begun[1] > 0, "{outcome:?}");
     }

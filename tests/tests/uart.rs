@@ -5,20 +5,18 @@
 use std::collections::VecDeque;
 
 use brain::{BrainConfig, Station};
-use geometry::{GoalEnd, Pose, Twist};
+use geometry::Pose;
 use hil_sim::Stream;
-use host::radio::{Radio, RadioSettings, RadioSituation};
-use host::world::{BallModels, Robot, World};
+use host::radio::{Radio, RadioSettings};
 use match_tests::bad_line::{BadLine, Trouble};
+use match_tests::led_robot::{RUNNING, blind_sensors, drive_on, standing};
 use match_tests::swarm::guard::Guard;
-use match_tests::swarm::honest::Sayings;
+use match_tests::swarm::honest::SentPackets;
 use protocol::frame::TeamKey;
-use protocol::host::{Directive, HostCommand, RuleRole};
-use protocol::quantized::{WirePoint, WirePose};
-use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame};
+use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::serial::{Lines, line};
-use protocol::{Instant, RobotId, TeamId, Who};
-use rules::{Colour, League, Phase};
+use protocol::{Instant, RobotId, TeamId};
+use rules::League;
 
 const KEY: TeamKey = TeamKey([0x3c; 16]);
 const TEAM: TeamId = TeamId(1);
@@ -56,7 +54,7 @@ impl Uart {
 
 /// Results of a run.
 #[derive(Debug, Default)]
-struct Reported {
+struct Counts {
     frames: u32,
     believed: u32,
     dropped: u32,
@@ -65,15 +63,15 @@ struct Reported {
 }
 
 /// Ten seconds: good, bad from the second to the sixth, good.
-fn run(seed: u64, bad: Trouble, late: u32) -> Reported {
+fn run(seed: u64, bad: Trouble, late: u32) -> Counts {
     let id = RobotId::new(3).unwrap();
     let config = BrainConfig { epoch: 7, ..BrainConfig::hosted(id, TEAM, League::DivisionB) };
     let mut station = Station::with_keys(Instant(0), &config, case_library::division_b(), KEY.of_robot(id));
     let mut radio = Radio::new(RadioSettings { key: KEY, ..RadioSettings::new(TEAM, 70) });
     let (mut down, mut up) = (Uart::new(seed, "uart down"), Uart::new(seed, "uart up"));
     let (mut robots_lines, mut hosts_lines) = (Lines::new(), Lines::new());
-    let (mut guard, mut sayings) = (Guard::new(id, 7, 0), Sayings::default());
-    let mut reported = Reported::default();
+    let (mut guard, mut sent_packets) = (Guard::new(id, 7, 0), SentPackets::default());
+    let mut counts = Counts::default();
     let mut kicks = Vec::new();
     for tick in 0..1_000 {
         let (ms, now) = (tick * TICK, Instant(u64::from(tick * TICK) * 1000));
@@ -85,42 +83,23 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Reported {
             // Corrupted packets are refused.
             let _ = radio.handle_packet(now, &packet);
         }
-        let to = HostCommand {
-            to: id,
-            defending: GoalEnd::Negative,
-            phase: Phase::Run,
-            rule_role: RuleRole::Player,
-            // Never reached: it drives on.
-            directive: Directive::GoTo { pose: WirePose { at: WirePoint { x: 3_000, y: 0 }, heading: 0 } },
-        };
-        let situation = RadioSituation { us: Colour::Blue, phase: Phase::Run, placement: None };
-        radio.offer(now, &field(now, id), situation, &[to]);
+        radio.offer(now, &standing(now, [(id, Pose::default())]), RUNNING, &[drive_on(id)]);
         while let Some((_, packet)) = radio.poll_packet() {
-            sayings.add(&packet);
+            sent_packets.add(&packet);
             down.send(tick, &packet);
         }
         for packet in down.receive(tick, &mut robots_lines) {
-            reported.frames += 1;
-            if let Some(believed) = guard.honest.receive(&packet, &sayings) {
-                reported.believed += 1;
+            counts.frames += 1;
+            if let Some(believed) = guard.honest.receive(&packet, &sent_packets) {
+                counts.believed += 1;
                 guard.receive(ms, &believed);
             }
             station.handle_packet(now, &packet);
         }
-        let health = Health { battery: Some(16.0), tipped: false, kicker_ready: true };
-        let sensors = SensorFrame {
-            pose: None,
-            ball: None,
-            opponents: heapless::Vec::new(),
-            ball_contact: false,
-            busy: false,
-            odometry: Twist::default(),
-            health,
-            camera: None,
-        };
+        let sensors = blind_sensors();
         station.handle_sensors(now, &sensors);
         while let Some(packet) = station.poll_packet(now) {
-            sayings.add(&packet);
+            sent_packets.add(&packet);
             up.send(tick, &packet);
         }
         let Some(order) = station.poll_actuators(now) else { continue };
@@ -133,8 +112,8 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Reported {
         };
         kicks.push((ms, kick));
         if trouble {
-            reported.braked += u32::from(kick == OmniKick::Discharge);
-            reported.drove += u32::from(wheels.iter().any(|rim| rim.abs() > 0.1));
+            counts.braked += u32::from(kick == OmniKick::Discharge);
+            counts.drove += u32::from(wheels.iter().any(|rim| rim.abs() > 0.1));
         }
     }
     // After receiving for half a second it is armed, as it was before the trouble.
@@ -142,26 +121,12 @@ fn run(seed: u64, bad: Trouble, late: u32) -> Reported {
         kicks.iter().filter(|(ms, _)| (from..to).contains(ms)).all(|(_, kick)| *kick != OmniKick::Discharge)
     };
     assert!(armed(1_000, 2_000) && armed(7_000, 10_000), "seed {seed}");
-    reported.dropped = robots_lines.dropped() + hosts_lines.dropped();
-    reported
-}
-
-/// It stands in the middle; no other robot is there.
-fn field(now: Instant, id: RobotId) -> World {
-    let mut world = World::empty(now, BallModels::default());
-    world.put(Robot {
-        who: Who { colour: Colour::Blue, id },
-        pose: Pose::default(),
-        velocity: geometry::Vector::default(),
-        angular: 0.0,
-        confidence: 1.0,
-        seen: now,
-    });
-    world
+    counts.dropped = robots_lines.dropped() + hosts_lines.dropped();
+    counts
 }
 
 #[test]
-fn a_line_that_drops_doubles_and_corrupts_a_byte_in_a_hundred_slows_a_robot_and_never_makes_it_dangerous() {
+fn a_serial_line_with_1_percent_faulty_bytes_is_never_dangerous() {
     for seed in 0..8 {
         // Each fault alone, then all together.
         let good = Trouble::default();
@@ -171,25 +136,25 @@ fn a_line_that_drops_doubles_and_corrupts_a_byte_in_a_hundred_slows_a_robot_and_
             Trouble { doubled: 10.0, ..good },
             Trouble::of_each(4.0),
         ] {
-            let reported = run(seed, bad, 2);
-            assert!(reported.believed < reported.frames && reported.dropped > 0, "{reported:?}");
-            assert!(reported.drove > 0, "{reported:?}");
+            let counts = run(seed, bad, 2);
+            assert!(counts.believed < counts.frames && counts.dropped > 0, "{counts:?}");
+            assert!(counts.drove > 0, "{counts:?}");
         }
     }
 }
 
 #[test]
-fn a_line_so_bad_that_hardly_a_frame_survives_makes_it_brake() {
+fn a_serial_line_that_loses_most_frames_makes_the_robot_brake() {
     for seed in 0..8 {
-        let reported = run(seed, Trouble::of_each(60.0), 5);
-        assert!(reported.braked > 300 && reported.drove < 100, "{reported:?}");
+        let counts = run(seed, Trouble::of_each(60.0), 5);
+        assert!(counts.braked > 300 && counts.drove < 100, "{counts:?}");
     }
 }
 
 #[test]
-fn bytes_that_come_late_but_whole_are_no_trouble_up_to_three_ticks() {
+fn bytes_up_to_three_ticks_late_cause_no_braking() {
     for seed in 0..8 {
-        let reported = run(seed, Trouble::default(), 3);
-        assert_eq!((reported.braked, reported.dropped), (0, 0), "{reported:?}");
+        let counts = run(seed, Trouble::default(), 3);
+        assert_eq!((counts.braked, counts.dropped), (0, 0), "{counts:?}");
     }
 }

@@ -4,7 +4,7 @@
 use brain::governor::Ruling;
 use casebase::CaseBase;
 use geometry::{Angle, Field, GoalEnd, Point};
-use match_tests::surface::{Surface, kicks, pose};
+use match_tests::test_field::{TestField, kicks, pose};
 use protocol::RobotId;
 use protocol::host::{Condition, Directive, Hint, KickOrder, RuleRole};
 use protocol::quantized::{WirePoint, WirePose};
@@ -15,14 +15,14 @@ fn base() -> CaseBase<'static> {
     case_library::division_b()
 }
 
-fn surface(ball: (f32, f32), ours: &[(u8, f32, f32, f32)]) -> Surface<'static> {
-    let mut surface = Surface::new(League::DivisionB, base(), ball, ours);
+fn field(ball: (f32, f32), ours: &[(u8, f32, f32, f32)]) -> TestField<'static> {
+    let mut field = TestField::new(League::DivisionB, base(), ball, ours);
     for &(number, ..) in ours {
-        surface.give_order(number, RuleRole::Player, Directive::Stand);
+        field.give_order(number, RuleRole::Player, Directive::Stand);
     }
     // The link must have been good for half a second.
-    surface.during(0.6, |_| {});
-    surface
+    field.during(0.6, |_| {});
+    field
 }
 
 fn at(x: f32, y: f32) -> WirePoint {
@@ -34,37 +34,37 @@ fn go_to(x: f32, y: f32, degrees: f32) -> Directive {
 }
 
 #[test]
-fn three_metres_across_the_field_take_less_than_2_2_s_and_end_within_a_centimetre_at_rest() {
-    let mut surface = surface((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
-    surface.give_order(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
+fn three_metres_take_less_than_2_2_s_and_end_within_1_cm() {
+    let mut field = field((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
+    field.give_order(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
     let goal = Point::new(1.0, 1.236);
-    let there = |surface: &Surface<'_>| {
-        let robot = surface.ours(1);
+    let there = |field: &TestField<'_>| {
+        let robot = field.ours(1);
         robot.pose.position.distance(goal) < 0.01
             && robot.velocity.norm() < 0.05
             && (robot.pose.heading - Angle::degrees(135.0)).abs() < 0.05
     };
     // From standstill to standstill with 3 and 3.5 m/s²: √(2·3·(1/3 + 1/3.5)) = 1.93 s.
-    let took = surface.until(4.0, there).expect("arrives");
+    let took = field.until(4.0, there).expect("arrives");
     assert!(took < 2.2, "{took}");
-    surface.during(1.0, |surface| assert!(there(surface), "stays"));
+    field.during(1.0, |field| assert!(there(field), "stays"));
 }
 
 #[test]
-fn a_robot_that_receives_much_in_a_step_stays_on_its_way_and_plans_in_the_next() {
+fn a_step_with_many_messages_reuses_the_path_and_the_next_replans() {
     let robot = RobotId::new(1).unwrap();
     // Whether its order of that step changes when it is ordered back, with or without messages of teammates.
     let turns = |chatter: &[u8]| {
         let [on, back] = [go_to(1.0, 1.236, 135.0), go_to(-1.0, -1.0, 0.0)].map(|second| {
-            let mut surface = surface((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
-            surface.give_order(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
-            surface.during(0.3, |_| {});
-            surface.give_order(1, RuleRole::Player, second);
+            let mut field = field((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
+            field.give_order(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
+            field.during(0.3, |_| {});
+            field.give_order(1, RuleRole::Player, second);
             for teammates in chatter {
-                surface.chatter = *teammates;
-                surface.step();
+                field.chatter = *teammates;
+                field.step();
             }
-            surface.orders[&robot]
+            field.orders[&robot]
         });
         on != back
     };
@@ -72,27 +72,27 @@ fn a_robot_that_receives_much_in_a_step_stays_on_its_way_and_plans_in_the_next()
 }
 
 #[test]
-fn on_an_air_that_is_always_full_a_robot_arrives_an_eighth_of_a_second_later_at_most() {
+fn on_a_saturated_radio_channel_a_robot_arrives_at_most_0_125_s_later() {
     let goal = Point::new(1.0, 1.236);
     let [quiet, full] = [0, 9].map(|chatter| {
-        let mut surface = surface((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
-        surface.chatter = chatter;
-        surface.give_order(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
-        surface.until(4.0, |c| c.ours(1).pose.position.distance(goal) < 0.01).expect("arrives")
+        let mut field = field((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
+        field.chatter = chatter;
+        field.give_order(1, RuleRole::Player, go_to(1.0, 1.236, 135.0));
+        field.until(4.0, |field| field.ours(1).pose.position.distance(goal) < 0.01).expect("arrives")
     });
     // In the first ten steps it keeps standing; after that every second step plans.
     assert!(full < quiet + 0.125, "{full} s instead of {quiet}");
 }
 
 #[test]
-fn teammates_speak_twenty_times_a_second_and_no_more_than_two_of_six_in_a_step() {
+fn robots_send_20_beacons_a_second_and_at_most_two_of_six_per_step() {
     let places: Vec<_> = (0..6).map(|n| (n, 0.5 * f32::from(n), -1.0, 0.0)).collect();
-    let mut surface = surface((0.0, 2.5), &places);
+    let mut field = field((0.0, 2.5), &places);
     let mut beacons = [0; 6];
-    surface.during(1.0, |surface| {
+    field.during(1.0, |field| {
         let speaks = |(_, message): &&_| matches!(message, TeamMessage::Beacon(_));
         let speakers: Vec<_> =
-            surface.sent_messages().iter().filter(speaks).map(|(id, _)| id.index()).collect();
+            field.sent_messages().iter().filter(speaks).map(|(id, _)| id.index()).collect();
         assert!(speakers.len() <= 2, "{speakers:?}");
         for id in speakers {
             beacons[id] += 1;
@@ -103,146 +103,143 @@ fn teammates_speak_twenty_times_a_second_and_no_more_than_two_of_six_in_a_step()
 
 #[test]
 fn a_robot_in_the_way_is_passed_without_touching_it() {
-    let mut surface = surface((0.0, 2.5), &[(1, -1.5, 0.0, 0.0)]);
-    surface.opponent(1, 0.0, 0.02, 0.0);
-    surface.opponent(2, 0.3, -0.3, 0.0);
-    surface.give_order(1, RuleRole::Player, go_to(1.5, 0.0, 0.0));
-    let took = surface.until(4.0, |c| c.ours(1).pose.position.distance(Point::new(1.5, 0.0)) < 0.02);
+    let mut field = field((0.0, 2.5), &[(1, -1.5, 0.0, 0.0)]);
+    field.opponent(1, 0.0, 0.02, 0.0);
+    field.opponent(2, 0.3, -0.3, 0.0);
+    field.give_order(1, RuleRole::Player, go_to(1.5, 0.0, 0.0));
+    let took = field.until(4.0, |field| field.ours(1).pose.position.distance(Point::new(1.5, 0.0)) < 0.02);
     assert!(took.is_some_and(|took| took < 3.2), "{took:?}");
-    assert!(surface.events.is_empty(), "{:?}", surface.events);
+    assert!(field.events.is_empty(), "{:?}", field.events);
 }
 
 #[test]
-fn a_resting_ball_is_had_facing_the_way_asked() {
+fn get_ball_takes_a_resting_ball_facing_the_requested_way() {
     for (x, y) in [(0.8, 0.0), (-0.8, 0.3), (0.0, 1.0)] {
-        let mut surface = surface((0.0, 0.0), &[(1, x, y, 30.0)]);
-        surface.give_order(1, RuleRole::Player, Directive::GetBall { face: Some(at(4.5, 0.0)) });
-        let took = surface.until(5.0, |c| {
-            c.ours(1).ball_contact && (c.ours(1).pose.turn_to(Point::new(4.5, 0.0))).abs() < 0.05
+        let mut field = field((0.0, 0.0), &[(1, x, y, 30.0)]);
+        field.give_order(1, RuleRole::Player, Directive::GetBall { face: Some(at(4.5, 0.0)) });
+        let took = field.until(5.0, |field| {
+            field.ours(1).ball_contact && (field.ours(1).pose.turn_to(Point::new(4.5, 0.0))).abs() < 0.05
         });
         assert!(took.is_some_and(|took| took < 3.5), "from {x}, {y}: {took:?}");
-        surface.during(1.0, |_| {});
-        assert!(surface.ours(1).ball_contact, "kept, from {x}, {y}");
+        field.during(1.0, |_| {});
+        assert!(field.ours(1).ball_contact, "kept, from {x}, {y}");
     }
 }
 
 #[test]
-fn a_rolling_ball_is_met_and_had() {
+fn get_ball_intercepts_a_rolling_ball() {
     for (from, velocity) in [((2.0, 0.4), (-2.0, 0.0)), ((-2.0, 1.5), (1.2, -0.8)), ((0.5, -1.0), (0.4, 0.9))]
     {
-        let mut surface = surface((0.0, 2.9), &[(1, 0.0, 0.0, 0.0)]);
-        surface.roll(from, velocity);
-        surface.give_order(1, RuleRole::Player, Directive::GetBall { face: None });
-        let took = surface.until(6.0, |c| c.brain(1).belief().holds_ball);
-        assert!(took.is_some(), "{from:?} {velocity:?}: ball at {:?}", surface.ball());
-        surface.during(0.5, |_| {});
-        assert!(surface.ours(1).ball_contact, "kept: {from:?} {velocity:?}");
+        let mut field = field((0.0, 2.9), &[(1, 0.0, 0.0, 0.0)]);
+        field.roll(from, velocity);
+        field.give_order(1, RuleRole::Player, Directive::GetBall { face: None });
+        let took = field.until(6.0, |field| field.brain(1).belief().holds_ball);
+        assert!(took.is_some(), "{from:?} {velocity:?}: ball at {:?}", field.ball());
+        field.during(0.5, |_| {});
+        assert!(field.ours(1).ball_contact, "kept: {from:?} {velocity:?}");
     }
 }
 
 #[test]
 fn a_kick_goes_where_it_was_aimed_with_the_speed_asked() {
     for (target, speed) in [((4.5, 0.3), 600), ((0.0, -2.0), 300), ((-3.0, 2.0), 450)] {
-        let mut surface = surface((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
-        surface.give_order(
+        let mut field = field((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
+        field.give_order(
             1,
             RuleRole::Player,
             Directive::Kick { at: at(target.0, target.1), kick: KickOrder::Flat(speed) },
         );
-        let took = surface.until(6.0, |c| !c.kicks().is_empty());
+        let took = field.until(6.0, |field| !field.kicks().is_empty());
         assert!(took.is_some_and(|took| took < 5.0), "{target:?}: {took:?}");
-        let (_, left, velocity) = surface.kicks()[0];
+        let (_, left, velocity) = field.kicks()[0];
         assert!((left - f32::from(speed) * 0.01).abs() < 0.25, "{left}");
-        let wanted = surface.ball().direction_to(Point::new(target.0, target.1));
+        let wanted = field.ball().direction_to(Point::new(target.0, target.1));
         assert!((velocity.angle() - wanted).abs() < 0.08, "{:?} {wanted:?}", velocity.angle());
     }
 }
 
 #[test]
 fn a_chip_flies() {
-    let mut surface = surface((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
-    surface.give_order(1, RuleRole::Player, Directive::Kick { at: at(3.5, 0.3), kick: KickOrder::Chip(400) });
-    assert!(surface.until(6.0, |c| c.world.ball.height > 0.2).is_some());
+    let mut field = field((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
+    field.give_order(1, RuleRole::Player, Directive::Kick { at: at(3.5, 0.3), kick: KickOrder::Chip(400) });
+    assert!(field.until(6.0, |field| field.world.ball.height > 0.2).is_some());
 }
 
 #[test]
-fn a_free_kick_is_taken_with_one_touch_and_the_kicker_leaves_the_ball_alone_afterwards() {
-    let mut surface = surface((-1.0, 1.0), &[(1, -1.5, 0.6, 0.0)]);
-    surface.phase = Phase::FreeKick(Side::Ours);
-    surface.give_order(1, RuleRole::Kicker, Directive::Kick { at: at(1.0, 1.0), kick: KickOrder::Flat(150) });
-    assert!(surface.until(6.0, |c| !c.kicks().is_empty()).is_some());
-    let touches = |c: &Surface<'_>| {
-        c.events
+fn a_free_kick_takes_one_touch_and_the_kicker_then_leaves_the_ball() {
+    let mut field = field((-1.0, 1.0), &[(1, -1.5, 0.6, 0.0)]);
+    field.phase = Phase::FreeKick(Side::Ours);
+    field.give_order(1, RuleRole::Kicker, Directive::Kick { at: at(1.0, 1.0), kick: KickOrder::Flat(150) });
+    assert!(field.until(6.0, |field| !field.kicks().is_empty()).is_some());
+    let touches = |field: &TestField<'_>| {
+        field
+            .events
             .iter()
             .filter(|(_, e)| matches!(e, hil_sim::small_size::PhysicsEvent::Touched { .. }))
             .count()
     };
-    let before = touches(&surface);
-    surface.phase = Phase::Run;
-    surface.during(4.0, |_| {});
-    assert_eq!(touches(&surface), before, "{:?}", surface.events);
+    let before = touches(&field);
+    field.phase = Phase::Run;
+    field.during(4.0, |_| {});
+    assert_eq!(touches(&field), before, "{:?}", field.events);
     assert!(before <= 1);
 }
 
 #[test]
 fn a_pass_waits_behind_the_ball_until_it_is_ready() {
-    let mut surface = surface((0.0, 0.0), &[(1, -0.6, 0.2, 0.0), (2, 2.0, 1.0, 0.0)]);
-    surface.phase = Phase::FreeKick(Side::Ours);
+    let mut field = field((0.0, 0.0), &[(1, -0.6, 0.2, 0.0), (2, 2.0, 1.0, 0.0)]);
+    field.phase = Phase::FreeKick(Side::Ours);
     let receiver = RobotId::new(2).unwrap();
     let order = |ready| Directive::Pass { at: at(2.0, 1.0), receiver, kick: KickOrder::Flat(350), ready };
-    surface.give_order(1, RuleRole::Kicker, order(false));
-    surface.during(3.0, |c| assert!(!c.ours(1).touching));
-    surface.give_order(1, RuleRole::Kicker, order(true));
-    let took = surface.until(2.0, |c| !c.kicks().is_empty()).expect("passes");
+    field.give_order(1, RuleRole::Kicker, order(false));
+    field.during(3.0, |field| assert!(!field.ours(1).touching));
+    field.give_order(1, RuleRole::Kicker, order(true));
+    let took = field.until(2.0, |field| !field.kicks().is_empty()).expect("passes");
     assert!(took < 1.0, "{took}");
 }
 
 #[test]
 fn a_pass_is_received() {
     for speed in [2.0, 3.5, 4.5] {
-        let mut surface = surface((0.0, 0.0), &[(2, 2.3, 0.3, 0.0)]);
-        surface.give_order(2, RuleRole::Player, Directive::Receive { at: at(2.0, 0.0), then: None });
-        surface.during(1.0, |_| {});
-        surface.roll((-1.0, 0.1), (speed, 0.0));
-        let took = surface.until(4.0, |c| c.brain(2).belief().holds_ball);
+        let mut field = field((0.0, 0.0), &[(2, 2.3, 0.3, 0.0)]);
+        field.give_order(2, RuleRole::Player, Directive::Receive { at: at(2.0, 0.0), then: None });
+        field.during(1.0, |_| {});
+        field.roll((-1.0, 0.1), (speed, 0.0));
+        let took = field.until(4.0, |field| field.brain(2).belief().holds_ball);
         assert!(took.is_some(), "{speed} m/s");
-        surface.during(0.6, |_| {});
+        field.during(0.6, |_| {});
         assert!(
-            surface.ours(2).ball_contact,
+            field.ours(2).ball_contact,
             "{speed} m/s: ball at {:?}, robot at {:?}",
-            surface.ball(),
-            surface.ours(2).pose
+            field.ball(),
+            field.ours(2).pose
         );
     }
 }
 
 #[test]
 fn a_pass_is_shot_at_the_goal_at_first_touch() {
-    let mut surface = surface((0.0, 0.0), &[(2, 2.5, 0.0, 0.0)]);
-    surface.give_order(
-        2,
-        RuleRole::Player,
-        Directive::Receive { at: at(2.5, 0.0), then: Some(at(4.5, 0.0)) },
-    );
-    surface.during(1.0, |_| {});
+    let mut field = field((0.0, 0.0), &[(2, 2.5, 0.0, 0.0)]);
+    field.give_order(2, RuleRole::Player, Directive::Receive { at: at(2.5, 0.0), then: Some(at(4.5, 0.0)) });
+    field.during(1.0, |_| {});
     // From the front left: the goal lies 45° to the right of the ball's origin.
-    surface.roll((4.0, 1.5), (-2.1, -2.1));
-    let took = surface.until(3.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
-    assert!(took.is_some(), "ball at {:?}, {:?}", surface.ball(), surface.kicks());
+    field.roll((4.0, 1.5), (-2.1, -2.1));
+    let took = field.until(3.0, |field| field.ball().x() > 4.5 && field.ball().y().abs() < 0.5);
+    assert!(took.is_some(), "ball at {:?}, {:?}", field.ball(), field.kicks());
 }
 
 #[test]
 fn the_ball_is_dribbled_for_less_than_a_metre_at_a_time() {
-    let mut surface = surface((0.0, 0.0), &[(1, -0.4, 0.0, 0.0)]);
-    surface.give_order(1, RuleRole::Player, Directive::Dribble { pose: WirePose::from(pose(2.5, 0.0, 0.0)) });
+    let mut field = field((0.0, 0.0), &[(1, -0.4, 0.0, 0.0)]);
+    field.give_order(1, RuleRole::Player, Directive::Dribble { pose: WirePose::from(pose(2.5, 0.0, 0.0)) });
     let mut longest = 0.0_f32;
-    surface.during(10.0, |c| {
-        if let Some(from) = c.ours(1).dribbling_from {
-            longest = longest.max(from.distance(c.ball()));
+    field.during(10.0, |field| {
+        if let Some(from) = field.ours(1).dribbling_from {
+            longest = longest.max(from.distance(field.ball()));
         }
     });
     assert!(longest < 0.95, "{longest}");
-    assert!(surface.ball().x() > 2.0, "and gets on: {:?}", surface.ball());
+    assert!(field.ball().x() > 2.0, "and gets on: {:?}", field.ball());
 }
 
 #[test]
@@ -250,115 +247,106 @@ fn a_keeper_on_its_stretch_stops_shots() {
     let mut stopped = 0;
     let shots = [(1.0, -0.35, 4.0), (0.5, 0.3, 5.0), (-0.8, 0.0, 5.5), (1.5, 0.25, 4.5), (-1.2, -0.3, 4.0)];
     for (y, aim, speed) in shots {
-        let mut surface = surface((-2.0, y), &[(0, -4.3, 0.0, 0.0)]);
-        surface.give_order(
-            0,
-            RuleRole::Keeper,
-            Directive::Block { from: at(-4.35, -0.5), to: at(-4.35, 0.5) },
-        );
-        surface.during(1.5, |_| {});
+        let mut field = field((-2.0, y), &[(0, -4.3, 0.0, 0.0)]);
+        field.give_order(0, RuleRole::Keeper, Directive::Block { from: at(-4.35, -0.5), to: at(-4.35, 0.5) });
+        field.during(1.5, |_| {});
         let (from, to) = (Point::<Field>::new(-1.5, y), Point::new(-4.5, aim));
         let v = (to - from).unit().unwrap() * speed;
-        surface.roll((from.x(), from.y()), (v.x(), v.y()));
-        let goal = surface.until(3.0, |c| c.ball().x() < -4.53);
+        field.roll((from.x(), from.y()), (v.x(), v.y()));
+        let goal = field.until(3.0, |field| field.ball().x() < -4.53);
         stopped += usize::from(goal.is_none());
     }
     assert!(stopped >= 4, "{stopped} of {}", shots.len());
 }
 
 #[test]
-fn the_ball_is_placed_from_everywhere_and_left_alone() {
+fn the_ball_is_placed_from_all_over_the_surface_and_then_left_alone() {
     let spots = [(0.0, 0.0), (2.0, 3.25), (4.75, 3.25), (-4.6, 0.3), (-4.75, -1.0)];
     for spot in spots {
         let target = Point::new(1.0, -1.5);
-        let mut surface = surface(spot, &[(1, 0.5, 0.5, 0.0)]);
-        surface.phase = Phase::BallPlacement(Side::Ours);
-        surface.placement = Some(target);
-        surface.give_order(1, RuleRole::Kicker, Directive::PlaceBall { at: target.into() });
-        let done = surface.until(28.0, |c| {
-            c.ball().distance(target) < 0.15
-                && c.world.ball.velocity.norm() < 0.01
-                && c.ours(1).pose.position.distance(c.ball()) > 0.6
+        let mut field = field(spot, &[(1, 0.5, 0.5, 0.0)]);
+        field.phase = Phase::BallPlacement(Side::Ours);
+        field.placement = Some(target);
+        field.give_order(1, RuleRole::Kicker, Directive::PlaceBall { at: target.into() });
+        let done = field.until(28.0, |field| {
+            field.ball().distance(target) < 0.15
+                && field.world.ball.velocity.norm() < 0.01
+                && field.ours(1).pose.position.distance(field.ball()) > 0.6
         });
-        assert!(
-            done.is_some(),
-            "{spot:?}: ball at {:?}, robot at {:?}",
-            surface.ball(),
-            surface.ours(1).pose
-        );
-        surface.during(2.0, |_| {});
-        assert!(surface.ball().distance(target) < 0.15, "{spot:?}");
+        assert!(done.is_some(), "{spot:?}: ball at {:?}, robot at {:?}", field.ball(), field.ours(1).pose);
+        field.during(2.0, |_| {});
+        assert!(field.ball().distance(target) < 0.15, "{spot:?}");
     }
 }
 
 #[test]
-fn on_halt_a_robot_at_full_speed_stands_within_a_second_and_stays() {
-    let mut surface = surface((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
-    surface.give_order(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
-    surface.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
-    surface.phase = Phase::Halt;
-    let took = surface.until(2.0, |c| c.ours(1).velocity.norm() < 0.02).expect("stands");
+fn on_halt_a_robot_at_full_speed_stops_within_a_second() {
+    let mut field = field((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
+    field.give_order(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
+    field.until(3.0, |field| field.ours(1).velocity.norm() > 2.8).expect("gets fast");
+    field.phase = Phase::Halt;
+    let took = field.until(2.0, |field| field.ours(1).velocity.norm() < 0.02).expect("stands");
     assert!(took < 1.0, "{took}");
-    surface.during(2.0, |c| {
-        assert!(c.ours(1).velocity.norm() < 0.05);
-        assert!(c.orders.values().all(|order| !kicks(order)));
-        assert!(matches!(c.brain(1).ruling(), Ruling::Braking(_)));
+    field.during(2.0, |field| {
+        assert!(field.ours(1).velocity.norm() < 0.05);
+        assert!(field.orders.values().all(|order| !kicks(order)));
+        assert!(matches!(field.brain(1).ruling(), Ruling::Braking(_)));
     });
 }
 
 #[test]
-fn in_stop_no_one_is_faster_than_1_5_m_per_s_nor_within_half_a_metre_of_the_ball() {
-    let mut surface = surface((0.0, 0.0), &[(1, -2.0, 0.0, 0.0), (2, -0.3, 0.2, 0.0)]);
-    surface.phase = Phase::Stop;
-    surface.give_order(1, RuleRole::Player, go_to(2.0, 0.0, 0.0));
-    surface.give_order(2, RuleRole::Player, go_to(-0.2, 0.2, 0.0));
-    surface.during(1.5, |_| {});
+fn in_stop_robots_keep_below_1_5_m_per_s_and_half_a_metre_off_the_ball() {
+    let mut field = field((0.0, 0.0), &[(1, -2.0, 0.0, 0.0), (2, -0.3, 0.2, 0.0)]);
+    field.phase = Phase::Stop;
+    field.give_order(1, RuleRole::Player, go_to(2.0, 0.0, 0.0));
+    field.give_order(2, RuleRole::Player, go_to(-0.2, 0.2, 0.0));
+    field.during(1.5, |_| {});
     let mut fastest = 0.0_f32;
-    surface.during(3.0, |c| {
-        fastest = fastest.max(c.ours(1).velocity.norm());
-        for robot in [c.ours(1), c.ours(2)] {
-            let gap = robot.pose.position.distance(c.ball()) - 0.09;
+    field.during(3.0, |field| {
+        fastest = fastest.max(field.ours(1).velocity.norm());
+        for robot in [field.ours(1), field.ours(2)] {
+            let gap = robot.pose.position.distance(field.ball()) - 0.09;
             assert!(gap > 0.5, "{gap}");
         }
     });
     assert!(fastest < 1.4, "{fastest}");
-    assert!(surface.ours(1).pose.position.distance(Point::new(2.0, 0.0)) < 0.02, "and gets there around it");
+    assert!(field.ours(1).pose.position.distance(Point::new(2.0, 0.0)) < 0.02, "and gets there around it");
 }
 
 #[test]
-fn when_the_host_falls_silent_a_robot_stands_within_a_second_and_moves_again_after_half_a_second_of_words() {
-    let mut surface = surface((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
-    surface.give_order(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
-    surface.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
-    surface.silent = true;
-    let took = surface.until(2.0, |c| c.ours(1).velocity.norm() < 0.02).expect("stands");
+fn a_silent_host_stops_a_robot_until_half_a_second_after_its_return() {
+    let mut field = field((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
+    field.give_order(1, RuleRole::Player, go_to(3.0, -1.0, 0.0));
+    field.until(3.0, |field| field.ours(1).velocity.norm() > 2.8).expect("gets fast");
+    field.silent = true;
+    let took = field.until(2.0, |field| field.ours(1).velocity.norm() < 0.02).expect("stands");
     assert!(took < 1.0, "{took}");
-    surface.silent = false;
-    surface.during(0.45, |c| assert!(c.ours(1).velocity.norm() < 0.05));
-    assert!(surface.until(1.0, |c| c.ours(1).velocity.norm() > 0.5).is_some());
+    field.silent = false;
+    field.during(0.45, |field| assert!(field.ours(1).velocity.norm() < 0.05));
+    assert!(field.until(1.0, |field| field.ours(1).velocity.norm() > 0.5).is_some());
 }
 
 #[test]
-fn a_field_player_sent_into_its_own_area_stays_out_and_the_keeper_does_not() {
-    let mut surface = surface((0.0, 2.5), &[(0, -3.0, 1.5, 0.0), (1, -3.0, -1.5, 0.0)]);
-    surface.give_order(0, RuleRole::Keeper, go_to(-4.2, 0.2, 0.0));
-    surface.give_order(1, RuleRole::Player, go_to(-4.2, -0.3, 0.0));
-    surface.during(4.0, |c| {
-        let p = c.ours(1).pose.position;
+fn only_the_keeper_enters_its_own_defence_area() {
+    let mut field = field((0.0, 2.5), &[(0, -3.0, 1.5, 0.0), (1, -3.0, -1.5, 0.0)]);
+    field.give_order(0, RuleRole::Keeper, go_to(-4.2, 0.2, 0.0));
+    field.give_order(1, RuleRole::Player, go_to(-4.2, -0.3, 0.0));
+    field.during(4.0, |field| {
+        let p = field.ours(1).pose.position;
         let area = League::DivisionB.field().defence_area(GoalEnd::Negative);
         assert!(area.iter().all(|shape| shape.distance_to(p) > 0.09), "{p:?}");
     });
-    assert!(surface.ours(0).pose.position.distance(Point::new(-4.2, 0.2)) < 0.02);
+    assert!(field.ours(0).pose.position.distance(Point::new(-4.2, 0.2)) < 0.02);
 }
 
-fn gameplay(surface: &mut Surface<'_>, robots: &[u8]) {
+fn gameplay(field: &mut TestField<'_>, robots: &[u8]) {
     for &robot in robots {
-        surface.give_order(robot, RuleRole::Player, Directive::Gameplay { hint: None });
+        field.give_order(robot, RuleRole::Player, Directive::Gameplay { hint: None });
     }
 }
 
 #[test]
-fn three_robots_play_cases_on_wheels_and_score_against_no_one() {
+fn three_wheeled_robots_play_cases_and_score_without_opponents() {
     let (mut scored, mut starts) = (0, 0);
     let mut ends = Vec::new();
     for ball in [
@@ -379,13 +367,13 @@ fn three_robots_play_cases_on_wheels_and_score_against_no_one() {
         (-0.5, -0.6),
     ] {
         let (x, y) = ball;
-        let mut surface =
-            surface(ball, &[(1, x - 0.6, y, 0.0), (2, x + 0.5, y + 1.0, 0.0), (3, x, y - 1.3, 0.0)]);
-        gameplay(&mut surface, &[1, 2, 3]);
-        let goal = surface.until(15.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
+        let mut field =
+            field(ball, &[(1, x - 0.6, y, 0.0), (2, x + 0.5, y + 1.0, 0.0), (3, x, y - 1.3, 0.0)]);
+        gameplay(&mut field, &[1, 2, 3]);
+        let goal = field.until(15.0, |field| field.ball().x() > 4.5 && field.ball().y().abs() < 0.5);
         starts += 1;
         scored += usize::from(goal.is_some());
-        ends.extend(surface.ends.iter().map(|(_, end)| *end));
+        ends.extend(field.ends.iter().map(|(_, end)| *end));
     }
     let finished = ends.iter().filter(|end| **end == Closure::Finished).count();
     let broken = ends.iter().filter(|end| matches!(end, Closure::Aborted { .. })).count();
@@ -394,17 +382,18 @@ fn three_robots_play_cases_on_wheels_and_score_against_no_one() {
 }
 
 #[test]
-fn a_robot_that_is_led_elsewhere_leaves_its_gameplay_and_the_others_choose_again_without_it() {
-    let mut surface = surface((-0.2, 0.1), &[(1, -0.8, 0.1, 0.0), (2, 0.3, 1.1, 0.0), (3, -0.2, -1.2, 0.0)]);
-    gameplay(&mut surface, &[1, 2, 3]);
+fn a_robot_ordered_elsewhere_leaves_its_gameplay_and_the_others_retrieve() {
+    let mut field = field((-0.2, 0.1), &[(1, -0.8, 0.1, 0.0), (2, 0.3, 1.1, 0.0), (3, -0.2, -1.2, 0.0)]);
+    gameplay(&mut field, &[1, 2, 3]);
     let id = |n| RobotId::new(n).unwrap();
-    let plays =
-        |c: &Surface<'_>, n| c.brain(1).cycle().play().is_some_and(|play| play.part_of(id(n)).is_some());
-    surface.until(3.0, |c| plays(c, 2)).expect("a gameplay with robot 2");
-    surface.give_order(2, RuleRole::Player, go_to(-2.0, 2.0, 0.0));
-    let took = surface.until(1.0, |c| !plays(c, 2)).expect("leaves");
+    let plays = |field: &TestField<'_>, n| {
+        field.brain(1).cycle().play().is_some_and(|play| play.part_of(id(n)).is_some())
+    };
+    field.until(3.0, |field| plays(field, 2)).expect("a gameplay with robot 2");
+    field.give_order(2, RuleRole::Player, go_to(-2.0, 2.0, 0.0));
+    let took = field.until(1.0, |field| !plays(field, 2)).expect("leaves");
     assert!(took <= 0.1, "{took}");
-    surface.during(4.0, |c| assert!(!plays(c, 2)));
+    field.during(4.0, |field| assert!(!plays(field, 2)));
 }
 
 #[test]
@@ -422,50 +411,50 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
             })
         })
         .unwrap();
-    let mut surface = surface(problem, &places);
+    let mut field = field(problem, &places);
     let hint = |ids: &[u8]| Some(Hint { case, robots: robots(ids), pass_point: None });
     for robot in [1, 2, 3] {
-        surface.give_order(robot, RuleRole::Player, Directive::Gameplay { hint: hint(&[3, 1]) });
+        field.give_order(robot, RuleRole::Player, Directive::Gameplay { hint: hint(&[3, 1]) });
     }
-    let proposed = |c: &Surface<'_>, ids: &[u8]| {
-        c.brain(1).cycle().play().is_some_and(|play| play.case == case && play.robots == robots(ids))
+    let proposed = |field: &TestField<'_>, ids: &[u8]| {
+        field.brain(1).cycle().play().is_some_and(|play| play.case == case && play.robots == robots(ids))
     };
-    assert!(surface.until(2.0, |c| proposed(c, &[3, 1])).is_some());
+    assert!(field.until(2.0, |field| proposed(field, &[3, 1])).is_some());
     // Robot 7 is absent: the robots play the case that they retrieve themselves.
-    let mut alone = self::surface(problem, &places);
+    let mut alone = self::field(problem, &places);
     for robot in [1, 2, 3] {
         alone.give_order(robot, RuleRole::Player, Directive::Gameplay { hint: hint(&[7, 1]) });
     }
-    alone.during(2.0, |c| assert!(!proposed(c, &[7, 1])));
+    alone.during(2.0, |field| assert!(!proposed(field, &[7, 1])));
     assert!(
         alone.ends.iter().any(|(_, end)| *end != Closure::NoCase) || alone.brain(1).cycle().play().is_some()
     );
 }
 
 #[test]
-fn a_robot_reports_the_host_ten_times_a_second_how_it_is_and_that_it_lost_the_link() {
-    let mut surface = surface((0.0, 2.5), &[(1, -1.0, 0.0, 0.0)]);
+fn telemetry_comes_ten_times_a_second_and_reports_a_lost_link() {
+    let mut field = field((0.0, 2.5), &[(1, -1.0, 0.0, 0.0)]);
     let one = RobotId::new(1).unwrap();
     // The kicker was discharged until the link was good, and charging takes half a second.
-    surface.during(0.6, |_| {});
-    surface.during(1.0, |c| {
-        let (at, telemetry) = c.telemetry[&one];
-        assert!(c.now().since(at) <= protocol::Duration::millis(100));
+    field.during(0.6, |_| {});
+    field.during(1.0, |field| {
+        let (at, telemetry) = field.telemetry[&one];
+        assert!(field.now().since(at) <= protocol::Duration::millis(100));
         assert!(telemetry.condition.has(Condition::KICKER_READY) && telemetry.battery > 1400);
         assert!(!telemetry.condition.has(Condition::LINK_LOST) && telemetry.silence < 300);
     });
-    surface.silent = true;
-    let lost = |c: &Surface<'_>| c.telemetry[&one].1.condition.has(Condition::LINK_LOST);
-    let took = surface.until(1.0, lost).expect("tells");
+    field.silent = true;
+    let lost = |field: &TestField<'_>| field.telemetry[&one].1.condition.has(Condition::LINK_LOST);
+    let took = field.until(1.0, lost).expect("tells");
     assert!((0.095..0.15).contains(&took), "{took}");
 }
 
 #[test]
-fn without_any_word_of_a_host_a_robot_does_nothing_at_all() {
-    let mut surface = Surface::new(League::DivisionB, base(), (0.3, 0.0), &[(1, 0.0, 0.0, 0.0)]);
-    surface.silent = true;
-    surface.during(2.0, |c| {
-        assert!(c.ours(1).velocity.norm() < 1e-3);
-        assert!(c.orders.values().all(|order| !kicks(order)));
+fn without_a_host_a_robot_does_nothing() {
+    let mut field = TestField::new(League::DivisionB, base(), (0.3, 0.0), &[(1, 0.0, 0.0, 0.0)]);
+    field.silent = true;
+    field.during(2.0, |field| {
+        assert!(field.ours(1).velocity.norm() < 1e-3);
+        assert!(field.orders.values().all(|order| !kicks(order)));
     });
 }

@@ -21,19 +21,19 @@ pub(crate) struct Camera {
     noise: Noise,
     chance: Stream,
     sway: Drift,
-    /// Frames so far.
+    /// Number of frames so far.
     frames: u32,
     /// Frames since the ball was detected.
     without_ball: u32,
     dt: f32,
 }
 
-/// What an object's image is like.
+/// Size of an object's image and the range of its detection.
 #[derive(Clone, Copy)]
 struct Image {
-    /// Size by which its range is measured, m.
+    /// Size by which the range is measured, m.
     size: f32,
-    /// Distance at which it is no longer detected, m.
+    /// Distance at which the object is no longer detected, m.
     within: f32,
 }
 
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn bearings_sway_with_the_gait_and_successive_frames_alike() {
+    fn bearing_errors_grow_while_walking_and_correlate_between_frames() {
         for (walks, degrees) in [(false, 0.5_f32), (true, 2.5)] {
             let (_, seen) = sights(1.0, walks);
             let bearings: Vec<f32> = seen.iter().map(|sight| sight.bearing().radians()).collect();
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ball_is_missed_more_often_the_farther_it_is_and_behind_it_is_not_seen() {
+    fn the_ball_is_missed_more_often_farther_away_and_never_seen_behind() {
         let share = |distance| {
             let (frames, seen) = sights(distance, false);
             seen.len() as f32 / frames as f32
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn landmarks_are_seen_in_glances_wherever_the_robot_stands() {
+    fn glances_see_every_landmark_from_all_over_the_field() {
         let mut seen = [0_u32; 6];
         for (seed, (x, y, heading)) in
             [(0.0, 0.0, 0.0), (1500.0, 800.0, 30.0), (-1500.0, -500.0, 120.0), (500.0, -1500.0, -90.0)]

@@ -28,7 +28,7 @@ impl Drift {
         self.value
     }
 
-    /// The present value.
+    /// Present value, in standard deviations.
     pub(crate) fn value(&self) -> f32 {
         self.value
     }
@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_has_unit_variance_and_the_correlation_asked_for() {
+    fn a_drift_has_unit_variance_and_its_correlation_time() {
         let mut chance = Stream::new(3, "drift");
         let mut drift = Drift::new(0.5, 0.04, &mut chance);
         let values: Vec<f32> = (0..200_000).map(|_| drift.step(&mut chance)).collect();

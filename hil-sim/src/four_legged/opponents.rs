@@ -22,7 +22,7 @@ use crate::four_legged::world::LeggedWorld;
 use crate::rng::Stream;
 
 crate::labels! {
-    /// What an opponent is there for.
+    /// Task of an opponent.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum OpponentRole {
@@ -49,12 +49,12 @@ impl OpponentRole {
 /// Behaviour of a scripted opponent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Conduct {
-    /// It plays from its role's home.
+    /// The opponent plays from its role's home.
     #[default]
     AtHome,
-    /// It plays from this region instead.
+    /// The opponent plays from this region instead.
     Within(Region),
-    /// It stays where it is: an obstacle that clears no ball.
+    /// The opponent stays where it is: an obstacle that clears no ball.
     Standing,
 }
 
@@ -63,19 +63,19 @@ pub enum Conduct {
 pub struct Opponent {
     /// Role from which its home follows.
     pub role: OpponentRole,
-    /// Its index in [`LeggedWorld::walkers`].
+    /// Index in [`LeggedWorld::walkers`].
     robot: usize,
     /// Region where it plays; `None` where it only stands.
     home: Option<Region>,
     /// Control steps since it has the ball.
     held: u32,
-    /// Its perception, where that has errors.
-    eyes: Option<Eyes>,
+    /// Perception with errors; `None`: the true state.
+    perception: Option<Perception>,
 }
 
 /// Errors of an opponent's perception.
 #[derive(Clone, Debug)]
-struct Eyes {
+struct Perception {
     noise: Noise,
     chance: Stream,
     /// Of its own pose: x, y, heading.
@@ -84,14 +84,14 @@ struct Eyes {
     ball: [Drift; 2],
 }
 
-impl Eyes {
+impl Perception {
     fn step(&mut self) {
         for drift in self.pose.iter_mut().chain(&mut self.ball) {
             drift.step(&mut self.chance);
         }
     }
 
-    /// Where a robot at `pose` believes to be.
+    /// Believed pose of a robot at `pose`.
     fn located(&self, pose: Pose<Field>) -> Pose<Field> {
         let [x, y, heading] = &self.pose;
         let off = Vector::new(x.value(), y.value()) * self.noise.localisation;
@@ -99,8 +99,8 @@ impl Eyes {
         Pose { position: pose.position + off, heading: pose.heading + turned }
     }
 
-    /// Where a robot at `pose` sees `ball`, relative to its body: it faces the ball and follows it with its
-    /// eyes, so that it is always in view, and its estimate is as correlated as the gait's sway.
+    /// Position of `ball` as a robot at `pose` sees it, in its body frame: it faces the ball and follows it
+    /// with its eyes, so that it is always in view, and its estimate is as correlated as the gait's sway.
     fn sees(&self, pose: Pose<Field>, ball: Point<Field>) -> Point<Body> {
         let [ranged, aimed] = &self.ball;
         let range = pose.position.distance(ball);
@@ -122,7 +122,7 @@ impl Opponent {
             Conduct::Within(region) => Some(region),
             Conduct::Standing => None,
         };
-        Self { role, robot, home, held: 0, eyes: None }
+        Self { role, robot, home, held: 0, perception: None }
     }
 
     /// The same opponent with errors of perception, if `noise` has any.
@@ -132,22 +132,22 @@ impl Opponent {
             let mut chance = Stream::new(seed, &format!("eyes {}", self.robot));
             let pose = [(); 3].map(|()| Drift::new(noise.localisation_time, CONTROL_STEP, &mut chance));
             let ball = [(); 2].map(|()| Drift::new(noise.sway_time, CONTROL_STEP, &mut chance));
-            self.eyes = Some(Eyes { noise, chance, pose, ball });
+            self.perception = Some(Perception { noise, chance, pose, ball });
         }
         self
     }
 
     /// Advances its perception by a control step.
     pub fn perceive(&mut self) {
-        if let Some(eyes) = &mut self.eyes {
-            eyes.step();
+        if let Some(perception) = &mut self.perception {
+            perception.step();
         }
     }
 
     /// The position that it reports.
     pub fn reported(&self, world: &LeggedWorld) -> Point<Field> {
         let pose = world.walkers[self.robot].pose;
-        self.eyes.as_ref().map_or(pose, |eyes| eyes.located(pose)).position
+        self.perception.as_ref().map_or(pose, |perception| perception.located(pose)).position
     }
 
     /// Decides and orders its body, in every control step.
@@ -155,11 +155,12 @@ impl Opponent {
         let Some(home) = self.home else { return };
         let (mut ball, mut pose) = (world.ball.position, world.walkers[self.robot].pose);
         let mut grasps = world.in_grasp(self.robot);
-        if let Some(eyes) = &self.eyes {
-            let seen = eyes.sees(pose, ball);
-            // The legs close on a ball where the eyes see it; whether it is slow enough shows in its motion.
+        if let Some(perception) = &self.perception {
+            let seen = perception.sees(pose, ball);
+            // The legs close on a ball where the opponent sees it; whether it is slow enough shows in its
+            // motion.
             grasps = world.in_grasp_at(self.robot, pose.to_field(seen));
-            pose = eyes.located(pose);
+            pose = perception.located(pose);
             ball = pose.to_field(seen);
         }
         self.held = if world.holder() == Some(self.robot) { self.held + 1 } else { 0 };
@@ -190,18 +191,16 @@ impl Opponent {
     ) -> (Twist<Body>, LeggedPrimitive) {
         let kicks = world.nominal_kicks();
         let kick = |kick| (Twist::default(), LeggedPrimitive::Kick(kick));
-        let ends = |heading: Angle, (_, off, length): (LeggedKick, Angle, f32)| {
-            ball + Vector::polar(length, heading + off)
+        let at_ball = Pose { position: ball, ..pose };
+        let clears = |heading: Angle, kick| {
+            self.clears(world, ball, kick_end(Pose { heading, ..at_ball }, kick), parameters)
         };
-        let clears = |heading: Angle, kick| self.clears(world, ball, ends(heading, kick), parameters);
-        let upfield = |kick: &(LeggedKick, Angle, f32)| ball.x() - ends(pose.heading, *kick).x();
-        let most_upfield = |kicks: &mut dyn Iterator<Item = (LeggedKick, Angle, f32)>| {
-            kicks.reduce(|best, next| if upfield(&next) > upfield(&best) { next } else { best })
-        };
-        if let Some(best) = most_upfield(&mut kicks.into_iter().filter(|kick| clears(pose.heading, *kick))) {
-            return kick(best.0);
+        if let Some(best) =
+            most_upfield(at_ball, kicks.into_iter().filter(|kick| clears(pose.heading, *kick)))
+        {
+            return kick(best);
         }
-        let steps = (0..=TURNS).flat_map(|i| [TURN_STEP * i as f32, -TURN_STEP * i as f32]);
+        let steps = (0..=TURNS_PER_SIDE).flat_map(|i| [TURN_STEP * i as f32, -TURN_STEP * i as f32]);
         let turn = steps.skip(1).find(|turn| clears(pose.heading + Angle::new(*turn), kicks[0]));
         match turn {
             Some(turn) if (self.held as f32) * CONTROL_STEP < parameters.opponent.clear.hold => {
@@ -209,11 +208,11 @@ impl Opponent {
                 let angular = (GAZE_GAIN * turn).clamp(-rate, rate);
                 (Twist { linear: Vector::default(), angular }, LeggedPrimitive::None)
             }
-            _ => kick(most_upfield(&mut kicks.into_iter()).map_or(LeggedKick::ForwardHard, |best| best.0)),
+            _ => kick(most_upfield(at_ball, kicks.into_iter()).unwrap_or(LeggedKick::ForwardHard)),
         }
     }
 
-    /// Whether a kick from `ball` to `end` leaves the own goal, meets no robot at once, and stays in the
+    /// True where a kick from `ball` to `end` leaves the own goal, meets no robot at once, and stays in the
     /// field.
     fn clears(
         &self,
@@ -233,6 +232,20 @@ impl Opponent {
             && field.clamp(end, clear.inside).distance(end) == 0.0
             && !others.map(|(_, walker)| walker.pose.position).any(blocks)
     }
+}
+
+/// A kick with its direction relative to the body and its length, m.
+type NominalKick = (LeggedKick, Angle, f32);
+
+/// Stop position of a ball kicked from `at` by a robot of that heading.
+fn kick_end(at: Pose<Field>, (_, off, length): NominalKick) -> Point<Field> {
+    at.position + Vector::polar(length, at.heading + off)
+}
+
+/// The kick from `at` that ends farthest upfield, towards −x; of equal ones the first.
+fn most_upfield(at: Pose<Field>, kicks: impl Iterator<Item = NominalKick>) -> Option<LeggedKick> {
+    let upfield = |kick: &NominalKick| at.position.x() - kick_end(at, *kick).x();
+    kicks.reduce(|best, next| if upfield(&next) > upfield(&best) { next } else { best }).map(|best| best.0)
 }
 
 impl Region {
@@ -267,9 +280,9 @@ fn walk_to(
 /// A control step, s (docs/architecture.md §2.3: four-legged, every 40 ms).
 const CONTROL_STEP: f32 = 0.04;
 /// Directions tried for a turn before a clearance: every 15°, half a turn to either side.
-const TURN_STEP: f32 = math::PI / TURNS as f32;
-/// Number of them to one side.
-const TURNS: u32 = 12;
+const TURN_STEP: f32 = math::PI / TURNS_PER_SIDE as f32;
+/// Number of turns that are tried to one side.
+const TURNS_PER_SIDE: u32 = 12;
 /// Turning rate for an error of 1 rad, 1/s: three time constants in 0.75 s, well damped at 4 rad/s² and steps
 /// of 40 ms.
 const GAZE_GAIN: f32 = 4.0;
@@ -309,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn with_the_ball_elsewhere_it_stands_at_its_border_and_faces_it() {
+    fn with_the_ball_outside_an_opponent_faces_it_from_its_border() {
         let mut game = game(OpponentRole::Defender, (1500.0, 300.0), (-1.0, 0.5));
         game.run(8.0);
         assert!(game.pose().position.distance(Point::new(0.9, 0.5)) < 0.01, "{:?}", game.pose());
@@ -318,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_in_its_home_is_gone_for_and_kicked_upfield() {
+    fn a_ball_in_the_home_region_is_kicked_upfield() {
         let mut game = game(OpponentRole::Defender, (1900.0, 0.0), (1.2, 0.3));
         game.run(6.0);
         let kick = game.events.iter().find_map(|event| match event {
@@ -372,7 +385,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clearance_leaves_the_own_goal_and_stays_in_the_field() {
+    fn a_clearance_goes_away_from_the_own_goal_and_stays_in_the_field() {
         let field = rules::League::FourLegged.field();
         // Facing upfield, beside the side line facing it, and turned to the own goal.
         for (at, heading) in [((1.4, 0.0), 180.0), ((1.4, 1.45), 90.0), ((1.5, -1.2), -60.0)] {
@@ -387,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clearance_is_not_kicked_into_a_robot_that_stands_before_it() {
+    fn a_clearance_avoids_a_robot_that_stands_in_its_path() {
         let free = clearances((1.4, 0.0), 180.0, None);
         let straight = free.iter().filter(|end| end.y().abs() < 0.45).count();
         // 2.15 m at 10° scatter by 0.37 m.
@@ -398,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn one_that_stands_neither_moves_nor_clears_and_one_with_a_region_of_its_own_keeps_to_it() {
+    fn conduct_decides_whether_an_opponent_stands_or_which_region_it_keeps() {
         let p = Parameters::four_legged();
         let mut standing = game(OpponentRole::Defender, (1400.0, 0.0), (1.2, 0.0));
         standing.opponent = Opponent::new(OpponentRole::Defender, Conduct::Standing, 0, p);
@@ -413,7 +426,7 @@ mod tests {
     }
 
     #[test]
-    fn with_noise_it_reports_a_place_that_drifts_and_may_believe_a_ball_outside_to_be_in_its_home() {
+    fn noise_makes_the_reported_position_drift_and_the_ball_seem_at_home() {
         let p = Parameters::four_legged();
         // A ball 5 cm before the goalie's home: without noise it stays out of reach of it.
         let goes = |noise: Noise, seed| {
@@ -439,7 +452,7 @@ mod tests {
     }
 
     #[test]
-    fn no_one_leaves_home_whatever_the_ball_does() {
+    fn opponents_never_leave_their_home_regions() {
         let p = Parameters::four_legged();
         for (role, at) in [
             (OpponentRole::Defender, 1500.0),

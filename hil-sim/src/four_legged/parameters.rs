@@ -6,29 +6,11 @@
 //! the ball's deceleration stands in both: brains use the value of `rules`, the simulated world the file's,
 //! and a test checks that they agree.
 
-use std::fmt;
 use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-/// Declares structs whose every field is a number within bounds, and their check.
-macro_rules! numbers {
-    ($($(#[$about:meta])* $name:ident in $file:literal { $($(#[$doc:meta])* $field:ident: $low:expr, $high:expr;)* })*) => { $(
-        $(#[$about])*
-        #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-        #[serde(deny_unknown_fields)]
-        pub struct $name { $($(#[$doc])* pub $field: f32,)* }
-
-        impl $name {
-            /// Every number within what the physics can bear.
-            pub fn check(&self) -> Result<(), ParameterError> {
-                $(within(concat!($file, ".", stringify!($field)), self.$field, $low, $high)?;)*
-                Ok(())
-            }
-        }
-    )* };
-}
-pub(crate) use numbers;
+use crate::parameters::{ParameterError, numbers, within};
 
 /// The numbers of one league.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
@@ -46,7 +28,7 @@ pub struct Parameters {
     pub kick: KickParameters,
     /// Home regions of the scripted opponents.
     pub opponent: OpponentParameters,
-    /// When a trial ends and what counts.
+    /// Ends of a trial, and its counts.
     pub referee: RefereeParameters,
     /// Perception of the real-robot profile.
     pub noise: Noise,
@@ -107,7 +89,7 @@ numbers! {
         distance_sd: 0.0, LARGEST;
         /// Standard deviation of the direction.
         angle_sd_deg: 0.0, LARGEST;
-        /// Where both are cut, in standard deviations.
+        /// Limit at which both are cut, in standard deviations.
         scatter_limit: POSITIVE, LARGEST;
         /// m that the ball rolls, soft kick.
         forward_soft: POSITIVE, LARGEST;
@@ -122,7 +104,7 @@ numbers! {
         /// m, the strongest pass.
         pass_max: POSITIVE, LARGEST;
     }
-    /// Clearing the ball.
+    /// Places and time of a clearance.
     ClearParameters in "opponent.clear" {
         /// m within the lines at which a clearance should end.
         inside: 0.0, LARGEST;
@@ -131,7 +113,7 @@ numbers! {
         /// s for which the ball is held at most.
         hold: 0.0, LARGEST;
     }
-    /// When a trial ends and what counts.
+    /// Ends of a trial, and its counts.
     RefereeParameters in "referee" {
         /// m beside a goalpost that still count as close.
         close: 0.0, LARGEST;
@@ -149,7 +131,7 @@ numbers! {
         field_of_view_deg: 0.0, 360.0;
         /// Standard deviation of an edge in the camera's image.
         pixel_deg: 0.0, LARGEST;
-        /// How far the head turns to either side.
+        /// Angle that the head turns to either side.
         pan_deg: 0.0, 180.0;
         /// s from one sweep of the head to the next.
         glance_every: 0.0, LARGEST;
@@ -194,7 +176,7 @@ numbers! {
     }
 }
 
-/// Where the scripted opponents play.
+/// Home regions of the scripted opponents.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpponentParameters {
@@ -204,7 +186,7 @@ pub struct OpponentParameters {
     pub midfield: Region,
     /// Home of the goalie.
     pub goalie: Region,
-    /// How they clear the ball.
+    /// Clearing the ball.
     pub clear: ClearParameters,
 }
 
@@ -220,33 +202,9 @@ pub struct Region {
 
 impl Noise {
     /// As in the paper's simulator: everything is seen where it is.
-    pub const NONE: Self = Self {
-        field_of_view_deg: 0.0,
-        pixel_deg: 0.0,
-        pan_deg: 0.0,
-        glance_every: 0.0,
-        glance_for: 0.0,
-        lost_after: 0.0,
-        marker: 0.0,
-        goal: 0.0,
-        range_floor: 0.0,
-        joint_deg: 0.0,
-        sway_deg: 0.0,
-        sway_time: 0.0,
-        miss: 0.0,
-        ball_within: 0.0,
-        landmark_within: 0.0,
-        odometry_scale: 0.0,
-        odometry_slip: 0.0,
-        slip_time: 0.0,
-        placing: 0.0,
-        placing_deg: 0.0,
-        localisation: 0.0,
-        localisation_deg: 0.0,
-        localisation_time: 0.0,
-    };
+    pub const NONE: Self = Self::ZERO;
 
-    /// Whether robots perceive without noise.
+    /// True for perception without noise.
     pub fn is_none(&self) -> bool {
         *self == Self::NONE
     }
@@ -296,46 +254,10 @@ impl Parameters {
     }
 }
 
-/// Why a file of parameters cannot be used.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ParameterError {
-    /// Not TOML, or a key unknown, missing or of a wrong type.
-    Syntax(String),
-    /// A number outside the limits of the physics.
-    Range {
-        /// Name of the number, as in the file.
-        name: &'static str,
-        /// Value in the file.
-        value: f32,
-        /// Its smallest valid value.
-        low: f32,
-        /// Its largest valid value.
-        high: f32,
-    },
-}
-
-impl fmt::Display for ParameterError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Syntax(message) => write!(f, "parameters: {message}"),
-            Self::Range { name, value, low, high } => {
-                write!(f, "parameters: {name} is {value}, must be within {low} to {high}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for ParameterError {}
-
-/// `value` if it lies between the bounds, else an error that names it.
-pub(crate) fn within(name: &'static str, value: f32, low: f32, high: f32) -> Result<(), ParameterError> {
-    if (low..=high).contains(&value) { Ok(()) } else { Err(ParameterError::Range { name, value, low, high }) }
-}
-
 /// The file, part of the program so that a binary alone can play.
 pub const FOUR_LEGGED_TOML: &str = include_str!("../../data/four-legged.toml");
 
-/// What the physics divides by is more than nothing.
+/// Smallest value that the physics divides by.
 const POSITIVE: f32 = f32::MIN_POSITIVE;
 /// No length, speed or time of this world is larger: a bound against nonsense, in the unit of each number.
 const LARGEST: f32 = 10_000.0;

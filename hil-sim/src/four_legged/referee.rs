@@ -13,7 +13,7 @@ use crate::four_legged::parameters::RefereeParameters;
 use crate::four_legged::world::{LeggedWorld, Side, WorldEvent};
 
 crate::labels! {
-    /// Which opponents play (paper §5.1.2, Fig. 11).
+    /// Opponents of a trial (paper §5.1.2, Fig. 11).
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Configuration {
         /// A defender and the goalie play.
@@ -26,7 +26,7 @@ crate::labels! {
 }
 
 crate::labels! {
-    /// How a trial ended.
+    /// Outcome of a trial.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum TrialOutcome {
@@ -46,7 +46,7 @@ crate::labels! {
 /// The referee's final result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialVerdict {
-    /// How the trial ended.
+    /// Outcome of the trial.
     pub outcome: TrialOutcome,
     /// Simulated seconds from kick-off.
     pub time: f32,
@@ -62,7 +62,7 @@ pub enum Party {
 }
 
 impl Party {
-    /// Its label in reports.
+    /// Label in reports.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Attackers => "attackers",
@@ -89,7 +89,7 @@ pub struct Referee {
 /// An opponent's contacts with the ball.
 #[derive(Clone, Copy, Debug, Default)]
 struct Contact {
-    /// When it last touched the ball, s.
+    /// Time of the last touch, s.
     at: Option<f32>,
     /// Number of its possessions (docs/papers.md R33).
     possessions: u32,
@@ -141,12 +141,12 @@ impl Referee {
         self.verdict = outcome.map(|outcome| TrialVerdict { outcome, time });
     }
 
-    /// How and when the trial ended, if it has.
+    /// Outcome and time of the trial, if it has ended.
     pub fn verdict(&self) -> Option<TrialVerdict> {
         self.verdict
     }
 
-    /// How the trial ended, if it has.
+    /// Outcome of the trial, if it has ended.
     pub fn outcome(&self) -> Option<TrialOutcome> {
         self.verdict.map(|verdict| verdict.outcome)
     }
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_ball_crosses_decides() {
+    fn where_the_ball_crosses_a_line_decides_the_outcome() {
         assert_eq!(between((2.69, 0.0), (2.70, 0.0)), None, "the line belongs to the field");
         assert_eq!(between((2.69, 0.0), (2.74, 0.0)), None, "not yet with all of itself");
         assert_eq!(between((2.74, 0.39), (2.745, 0.39)), Some(TrialOutcome::Goal));
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn a_possession_counts_again_after_half_a_second_without_contact_whoever_touched_meanwhile() {
+    fn a_possession_counts_again_after_half_a_second_without_contact() {
         let mut game = kick_off(Configuration::TwoDefenders);
         let had = |game: &Match| {
             (
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_to_touch_is_who_kicked_grabbed_or_was_hit() {
+    fn kicks_grabs_and_hits_count_as_the_last_touch() {
         let mut game = kick_off(Configuration::DefenderGoalie);
         assert_eq!(game.referee.last_touch(), None);
         game.touch(1.0, 1);

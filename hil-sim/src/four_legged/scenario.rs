@@ -49,9 +49,9 @@ pub struct Layout {
 pub struct Placed {
     /// Role of the opponent.
     pub role: OpponentRole,
-    /// What it does in the trial.
+    /// Conduct in the trial.
     pub conduct: Conduct,
-    /// Its position and heading.
+    /// Position and heading at kick-off.
     pub pose: Pose<Field>,
 }
 
@@ -67,7 +67,7 @@ impl Scenario {
     /// The paper's four scenarios, in its order.
     pub const PAPER: [Self; 4] = [Self::MiddleBack, Self::LeftSide, Self::DefenderAhead, Self::DefenderClose];
 
-    /// Short description.
+    /// Title of the scenario, a few words in lower case.
     pub fn title(self) -> &'static str {
         self.file().map_or("random", |file| &file.title)
     }
@@ -108,23 +108,11 @@ fn random(configuration: Configuration, parameters: &Parameters, seed: u64) -> L
     let mut chance = Stream::new(seed, "scenario");
     let ball = Point::new(chance.between(-2.0, 1.2), chance.between(-1.4, 1.4));
     let mut taken = vec![ball];
-    let mut place = |chance: &mut Stream, x: [f32; 2], y: [f32; 2]| {
-        for _ in 0..PLACING_ATTEMPTS {
-            let at = Point::new(chance.between(x[0], x[1]), chance.between(y[0], y[1]));
-            if taken.iter().all(|other| other.distance(at) >= APART) {
-                taken.push(at);
-                return at;
-            }
-        }
-        // Never in a region of a square metre with seven others on the field; overlapping robots are pushed
-        // apart at once.
-        Point::new(x[0], y[0])
-    };
     let field = League::FourLegged.field();
     let (x, y) = (ball.x(), ball.y());
-    let mut attackers = vec![place(&mut chance, [x - 0.7, x - 0.3], [y - 0.3, y + 0.3])];
+    let mut attackers = vec![place(&mut chance, &mut taken, [x - 0.7, x - 0.3], [y - 0.3, y + 0.3])];
     for _ in 1..TEAM {
-        attackers.push(place(&mut chance, [x - 1.2, x + 0.6], [y - 1.2, y + 1.2]));
+        attackers.push(place(&mut chance, &mut taken, [x - 1.2, x + 0.6], [y - 1.2, y + 1.2]));
     }
     let roles = match configuration {
         Configuration::DefenderGoalie => [OpponentRole::Defender, OpponentRole::Goalie],
@@ -132,11 +120,25 @@ fn random(configuration: Configuration, parameters: &Parameters, seed: u64) -> L
     };
     let opponents = roles.map(|role| {
         let home = role.home(parameters);
-        Placed::at_home(role, place(&mut chance, home.x, home.y), ball)
+        Placed::at_home(role, place(&mut chance, &mut taken, home.x, home.y), ball)
     });
     let attackers =
         attackers.into_iter().map(|at| Pose { position: field.clamp(at, 0.0), heading: Angle::ZERO });
     Layout { ball, attackers: attackers.collect(), opponents: opponents.to_vec() }
+}
+
+/// Draws a position of that rectangle which is clear of those taken, and takes it.
+fn place(chance: &mut Stream, taken: &mut Vec<Point<Field>>, x: [f32; 2], y: [f32; 2]) -> Point<Field> {
+    for _ in 0..PLACING_ATTEMPTS {
+        let at = Point::new(chance.between(x[0], x[1]), chance.between(y[0], y[1]));
+        if taken.iter().all(|other| other.distance(at) >= PLACED_APART_MIN) {
+            taken.push(at);
+            return at;
+        }
+    }
+    // Never in a region of a square metre with seven others on the field; overlapping robots are pushed apart
+    // at once.
+    Point::new(x[0], y[0])
 }
 
 fn in_metres([x, y]: [i16; 2]) -> Point<Field> {
@@ -144,7 +146,7 @@ fn in_metres([x, y]: [i16; 2]) -> Point<Field> {
     Point::new(f32::from(x) / 1000.0, f32::from(y) / 1000.0)
 }
 
-/// A scenario file.
+/// Content of `hil-sim/data/scenarios/*.toml`; mm, degrees.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ScenarioFile {
@@ -179,7 +181,7 @@ struct OpponentFile {
 /// Maximum number of attackers of a scenario: a four-legged team.
 pub const TEAM: usize = protocol::team::CASE_ROBOTS_MAX;
 /// Minimum distance between any two things placed at random, m: two robots' radii and a margin.
-const APART: f32 = 0.35;
+const PLACED_APART_MIN: f32 = 0.35;
 /// Maximum number of draws for a random position.
 const PLACING_ATTEMPTS: usize = 100;
 
@@ -209,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn everyone_stands_on_the_field_at_home_and_clear_of_each_other() {
+    fn start_positions_are_on_the_field_at_home_and_apart() {
         let (field, p) = (League::FourLegged.field(), Parameters::four_legged());
         for (scenario, configuration, layout) in layouts() {
             let robots = layout.attackers.iter().chain(layout.opponents.iter().map(|placed| &placed.pose));
@@ -227,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn the_defender_of_scenario_three_is_beyond_forty_centimetres_and_that_of_four_within() {
+    fn the_defender_is_beyond_40_cm_in_scenario_3_and_within_in_4() {
         for configuration in BOTH {
             let ahead = |scenario: Scenario| {
                 let layout = scenario.layout(configuration, Parameters::four_legged(), 0);
@@ -240,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn random_scenarios_follow_their_seed() {
+    fn a_seed_determines_a_random_scenario() {
         let p = Parameters::four_legged();
         let draw = |seed| Scenario::Random.layout(Configuration::DefenderGoalie, p, seed);
         assert_eq!(draw(3), draw(3));

@@ -24,7 +24,7 @@ pub struct Senses {
     before: Option<Pose<Field>>,
 }
 
-/// Sensors with errors.
+/// Camera and legs with their errors.
 #[derive(Clone, Debug)]
 struct Noisy {
     noise: Noise,
@@ -75,7 +75,8 @@ impl Senses {
         if let Some(noisy) = &mut self.noisy {
             // The legs hold the ball under the head.
             let ball = (!holds).then_some(world.ball.position);
-            let walks = walker.twist.linear.norm() > STANDS || walker.twist.angular.abs() > STANDS;
+            let walks = walker.twist.linear.norm() > STANDING_SPEED_MAX
+                || walker.twist.angular.abs() > STANDING_SPEED_MAX;
             frame.camera = Some(noisy.camera.frame(walker.pose, ball, walks));
             frame.odometry = noisy.odometry(walker);
             frame.pose = before.is_none().then(|| noisy.placed(walker.pose));
@@ -102,7 +103,7 @@ impl Noisy {
         Twist { linear: Vector::new(linear.x() * ahead, linear.y() * aside), angular: angular * turning }
     }
 
-    /// Where a robot that is placed at `pose` believes to stand.
+    /// Believed pose of a robot that is placed at `pose`.
     fn placed(&mut self, pose: Pose<Field>) -> Pose<Field> {
         let (x, y) = self.legs.normals();
         let turned = Angle::degrees(self.legs.normal() * self.noise.placing_deg);
@@ -116,8 +117,8 @@ impl Noisy {
 /// Minimum standard deviation of a noiseless measurement, m: the resolution of the wire format; it keeps
 /// brains from dividing by zero.
 const SIGMA_FLOOR: f32 = 0.001;
-/// Slower than this a robot stands, m/s and rad/s: below what one order of a step changes (0.024).
-const STANDS: f32 = 0.02;
+/// Speed below which a robot stands, m/s and rad/s: below what one order of a step changes (0.024).
+const STANDING_SPEED_MAX: f32 = 0.02;
 
 #[cfg(test)]
 mod tests {
@@ -147,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn odometry_is_the_path_since_the_last_look_in_the_bodys_own_frame() {
+    fn odometry_is_the_body_frame_motion_since_the_last_frame() {
         let mut senses = Senses::new(Noise::NONE, 1, 0, DT);
         let mut world = world();
         assert_eq!(senses.look(&world, 0, [], DT).odometry, Twist::default());
@@ -158,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_with_noise_knows_its_pose_at_kick_off_and_has_sights_from_then_on() {
+    fn with_noise_a_robot_gets_its_pose_at_kick_off_and_then_sights_alone() {
         let noise = Parameters::four_legged().noise;
         let (mut placed, mut count) = (0.0, 0);
         for seed in 0..400 {
@@ -175,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn brains_assume_the_errors_that_the_world_has() {
+    fn the_brains_error_model_equals_the_simulated_noise() {
         use brain::belief::model;
         let noise = Parameters::four_legged().noise;
         for (assumed, degrees) in [
@@ -190,12 +191,13 @@ mod tests {
             [model::MARKER_SIZE, model::GOAL_SIZE, model::RANGE_FLOOR, model::PLACING, model::REPORTED];
         assert_eq!(lengths, [noise.marker, noise.goal, noise.range_floor, noise.placing, noise.localisation]);
         let legs = [model::SLIP, model::SLIP_TIME, model::SCALE, model::SWAY_TIME, model::STANDS];
-        let world = [noise.odometry_slip, noise.slip_time, noise.odometry_scale, noise.sway_time, STANDS];
+        let world =
+            [noise.odometry_slip, noise.slip_time, noise.odometry_scale, noise.sway_time, STANDING_SPEED_MAX];
         assert_eq!(legs, world);
     }
 
     #[test]
-    fn legs_mismeasure_by_a_share_of_the_speed_and_do_not_feel_a_push() {
+    fn odometry_errors_are_a_share_of_the_speed_and_miss_pushes() {
         let noise = Parameters::four_legged().noise;
         let (mut squares, n) = (0.0, 4_000);
         for seed in 0..n {

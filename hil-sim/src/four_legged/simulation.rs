@@ -7,14 +7,13 @@
 //! four steps of 10 ms, the referee examining each. Each robot's clock starts at its boot, so no two need to
 //! agree.
 
-use std::fmt;
-
 use brain::BrainConfig;
 use protocol::decision::DecisionReport;
 use protocol::link::Packet;
 use protocol::lockstep::TickIn;
 use protocol::robot_io::ActuatorFrame;
 use protocol::{Duration, Instant, RobotId};
+use thiserror::Error;
 
 use crate::air::{Air, AirSettings};
 use crate::four_legged::fault::{Fault, ScheduledFault, flipped};
@@ -71,7 +70,7 @@ struct Robot<'a> {
     config: BrainConfig,
     computer: Option<Box<dyn Mcu + 'a>>,
     /// The tick in which its present epoch started.
-    born: u32,
+    booted_in: u32,
     senses: Senses,
     /// Number of the bit to flip in its next order.
     flip: Option<u8>,
@@ -143,7 +142,7 @@ impl<'a> Simulation<'a> {
         for (i, config) in brains.into_iter().enumerate() {
             let computer = start(&mut *backend, &config)?;
             let senses = Senses::new(noise, seed, i, TICK);
-            robots.push(Robot { config, computer: Some(computer), born: 0, senses, flip: None });
+            robots.push(Robot { config, computer: Some(computer), booted_in: 0, senses, flip: None });
         }
         let mut faults = faults;
         // Stable sort: faults of one tick are applied in the given order.
@@ -171,10 +170,10 @@ impl<'a> Simulation<'a> {
         let number = self.next;
         self.next += 1;
         self.tick = Tick { number, time: seconds(number, 0), ..Tick::default() };
-        self.happen(number)?;
+        self.apply_faults(number)?;
         self.trace.tick(number, &self.world);
         self.opponents.iter_mut().for_each(Opponent::perceive);
-        self.think(number)?;
+        self.run_computers(number)?;
         for Sent { from, packet } in &self.tick.sent {
             self.air.send(number, *from, packet);
         }
@@ -186,7 +185,7 @@ impl<'a> Simulation<'a> {
                 opponent.stand(&mut self.world);
             }
         }
-        self.play(number);
+        self.run_physics(number);
         Ok(&self.tick)
     }
 
@@ -196,7 +195,7 @@ impl<'a> Simulation<'a> {
         self.opponents_act_from = self.next.saturating_add((time.0 / TICK_US).try_into().unwrap_or(u32::MAX));
     }
 
-    /// What happened in the last tick.
+    /// Inputs, outputs and events of the last tick.
     pub fn tick(&self) -> &Tick {
         &self.tick
     }
@@ -248,7 +247,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Applies the faults scheduled for this tick.
-    fn happen(&mut self, number: u32) -> Result<(), SimulationError> {
+    fn apply_faults(&mut self, number: u32) -> Result<(), SimulationError> {
         let due = self.faults.partition_point(|fault| fault.tick <= number);
         for ScheduledFault { fault, .. } in self.faults.drain(..due).collect::<Vec<_>>() {
             self.tick.faults.push(fault.clone());
@@ -264,7 +263,7 @@ impl<'a> Simulation<'a> {
                     let Some(i) = place(id).filter(|&i| self.robots[i].computer.is_none()) else { continue };
                     let robot = &mut self.robots[i];
                     robot.config.epoch = robot.config.epoch.wrapping_add(1);
-                    robot.born = number;
+                    robot.booted_in = number;
                     robot.computer = Some(start(&mut *self.backend, &robot.config)?);
                 }
                 Fault::Air(settings) => self.air.set(settings),
@@ -279,7 +278,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Sends every computer its tick, then collects its answer.
-    fn think(&mut self, number: u32) -> Result<(), SimulationError> {
+    fn run_computers(&mut self, number: u32) -> Result<(), SimulationError> {
         for (i, robot) in self.robots.iter_mut().enumerate() {
             let id = robot.config.robot;
             // Measured even without a computer, so that odometry spans one tick after a reboot.
@@ -294,7 +293,7 @@ impl<'a> Simulation<'a> {
             self.tick.received.extend(packets.into_iter().map(|packet| ReceivedPacket { to: id, packet }));
             let tick = TickIn {
                 seq: number,
-                now: Instant(u64::from(number - robot.born) * TICK_US),
+                now: Instant(u64::from(number - robot.booted_in) * TICK_US),
                 air: self.tick.received[first..].iter().map(|received| &received.packet[..]).collect(),
                 sensors,
             };
@@ -320,7 +319,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Four steps of physics, each examined by the referee.
-    fn play(&mut self, number: u32) {
+    fn run_physics(&mut self, number: u32) {
         let mut events = Vec::new();
         for step in 1..=STEPS_PER_TICK {
             self.world.step();
@@ -332,10 +331,11 @@ impl<'a> Simulation<'a> {
     }
 }
 
-/// Why a trial cannot start or continue.
-#[derive(Debug)]
+/// Failure of a trial at its start or in a tick.
+#[derive(Debug, Error)]
 pub enum SimulationError {
     /// The layout has fewer positions than there are brains.
+    #[error("{wanted} robots, but the scenario has places for {places}")]
     TooManyRobots {
         /// Number of brains given.
         wanted: usize,
@@ -343,35 +343,17 @@ pub enum SimulationError {
         places: usize,
     },
     /// Brains must be given in rising order of their ids, each once; this id is out of order.
+    #[error("robot {0} is named twice or out of order")]
     IdsNotRising(RobotId),
     /// A robot's computer failed.
+    #[error("robot {robot}: {error}")]
     Computer {
         /// The robot with that computer.
         robot: RobotId,
-        /// What the computer's back end reported.
+        /// Error of the computer's back end.
+        #[source]
         error: McuError,
     },
-}
-
-impl fmt::Display for SimulationError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooManyRobots { wanted, places } => {
-                write!(f, "{wanted} robots, but the scenario has places for {places}")
-            }
-            Self::IdsNotRising(id) => write!(f, "robot {id} is named twice or out of order"),
-            Self::Computer { robot, error } => write!(f, "robot {robot}: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for SimulationError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Computer { error, .. } => Some(error),
-            _ => None,
-        }
-    }
 }
 
 fn start<'a>(

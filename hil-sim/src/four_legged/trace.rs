@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_world_at_rest_hashes_to_the_bytes_the_words_lists() {
+    fn a_resting_world_is_hashed_as_the_module_documents() {
         let world = LeggedWorld::new(Parameters::four_legged(), 0, Point::new(1.0, -2.0), Vec::new());
         let mut by_hand = Fnv::default();
         by_hand.add(&[7, 0, 0, 0]);

@@ -40,7 +40,7 @@ mod tests {
     use crate::four_legged::parameters::FOUR_LEGGED_TOML;
 
     #[test]
-    fn every_number_counts_and_comments_do_not() {
+    fn every_parameter_changes_the_world_hash_and_comments_do_not() {
         let own = world_hash();
         assert_eq!(own.len(), 8);
         let other = |from: &str, to: &str| {

@@ -124,7 +124,7 @@ impl Ball {
         if closing <= 0.0 {
             return Vector::default();
         }
-        let restitution = if closing > SOFT { hit.restitution } else { 0.0 };
+        let restitution = if closing > REBOUND_SPEED_MIN { hit.restitution } else { 0.0 };
         let push = (1.0 + restitution) * closing * hit.share;
         let along = relative + normal * closing;
         let sliding = along.norm();
@@ -153,7 +153,7 @@ pub(super) struct Impact {
 }
 
 /// Closing speed, m/s, below which bodies stay together; else a pushed ball would oscillate.
-const SOFT: f32 = 0.03;
+const REBOUND_SPEED_MIN: f32 = 0.03;
 /// Maximum number of hops in a millisecond: the lowest hop lasts 90 times as long.
 const HOPS_PER_STEP: usize = 2;
 
@@ -164,7 +164,7 @@ mod tests {
     use super::*;
     use crate::small_size::{Parameters, STEP};
 
-    fn surface() -> BallParameters {
+    fn division_b() -> BallParameters {
         Parameters::of(League::DivisionB).unwrap().ball
     }
 
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_flat_kick_of_six_metres_a_second_rests_where_the_closed_formula_says() {
-        let (mut ball, of) = (Ball::at(Point::default()), surface());
+        let (mut ball, of) = (Ball::at(Point::default()), division_b());
         ball.velocity = Vector::new(6.0, 0.0);
         let steps = run_until_rest(&mut ball, &of);
         // v²(1−c²)/2a + c²v²/2r with c = 5/7, a = 3.9, r = 0.35: 2.2606 + 26.2391 m; v(1−c)/a + cv/r = 0.4396
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn a_ball_set_rolling_never_slides() {
         let mut ball = Ball::rolling(Point::default(), Vector::new(0.0, -2.0));
-        let of = surface();
+        let of = division_b();
         run_until_rest(&mut ball, &of);
         // 2²/(2·0.35) = 5.714 m.
         assert!((ball.position.y() + 5.714_29).abs() < 1e-3, "{:?}", ball.position);
@@ -203,14 +203,14 @@ mod tests {
         let mut ball = Ball::at(Point::default());
         ball.velocity = Vector::new(1.0, 0.0);
         ball.spin = Vector::new(-4.0, 0.0);
-        run_until_rest(&mut ball, &surface());
+        run_until_rest(&mut ball, &division_b());
         // In the end it rolls with 5/7 · 1 + 2/7 · (−4) = −3/7 m/s.
         assert!(ball.position.x() < 0.0, "{:?}", ball.position);
     }
 
     #[test]
     fn a_chip_lands_where_the_parabola_says_and_hops_as_the_wires_model() {
-        let (mut ball, of) = (Ball::at(Point::default()), surface());
+        let (mut ball, of) = (Ball::at(Point::default()), division_b());
         ball.velocity = Vector::new(3.0, 0.0);
         ball.climb = 3.0;
         let mut top = 0.0_f32;

@@ -61,7 +61,7 @@ impl World {
             } else {
                 robot.leave_ball();
             }
-            let edge = robot.body.radius + EDGE;
+            let edge = robot.body.radius + EDGE_DISTANCE;
             if robot.present && (p.x().abs() > x - edge || p.y().abs() > y - edge) {
                 self.near_edge.push(i as u8);
             }
@@ -73,7 +73,7 @@ impl World {
         self.pairs.clear();
         self.pairs_until = self.step + PAIRS_STEPS;
         let fastest = self.robots.iter().map(|robot| robot.limits().speed).fold(0.0, f32::max);
-        let closing = 2.0 * fastest * (PAIRS_STEPS as f32 * STEP) + PUSHED;
+        let closing = 2.0 * fastest * (PAIRS_STEPS as f32 * STEP) + PUSHED_DISTANCE_MAX;
         for a in 0..self.robots.len() {
             let (first, rest) = self.robots.split_at(a + 1);
             let one = &first[a];
@@ -141,11 +141,11 @@ fn push_out(robot: &mut Robot, by: Vector<Field>, bounce: f32) {
 /// Steps between searches for pairs of near robots.
 const PAIRS_STEPS: u64 = 24;
 /// Distance, m, that others push a robot in that time beyond its own limits.
-const PUSHED: f32 = 0.05;
+const PUSHED_DISTANCE_MAX: f32 = 0.05;
 /// Steps between searches for robots near the ball, a board or a goal.
 const NEAR_STEPS: u64 = 8;
 /// Maximum distance between hull and ball, m, that both can close in that time and then be in the dribbler
 /// opening: 8 ms at 20 and 10 m/s, and the opening's depth.
 const BALL_REACH: f32 = 0.24 + 0.1;
 /// Distance between hull and board, m, that a robot can close in that time: 8 ms at 10 m/s.
-const EDGE: f32 = 0.08;
+const EDGE_DISTANCE: f32 = 0.08;

@@ -28,7 +28,7 @@ pub enum Clock {
     Unix(f64),
 }
 
-/// When geometry packets are sent.
+/// Times at which geometry packets are sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GeometryStyle {
     /// In separate packets with all cameras, with this period, s.
@@ -44,7 +44,7 @@ pub enum GeometryStyle {
 pub struct Compatibility {
     /// The profile that it belongs to.
     pub profile: Profile,
-    /// When geometry packets are sent.
+    /// Times at which geometry packets are sent.
     pub geometry: GeometryStyle,
     /// Cameras take their frames one after another instead of all at once.
     pub staggered: bool,
@@ -54,7 +54,7 @@ pub struct Compatibility {
     pub drawn_goals: bool,
     /// The ball model on the wire, if it is not that of the physics.
     pub reported_ball: Option<ReportedBall>,
-    /// Which robots' states an answer contains.
+    /// Robots whose states an answer contains.
     pub feedback: Feedback,
     /// A control message is answered even where nothing was refused.
     pub answers_control: bool,
@@ -80,7 +80,7 @@ pub struct Compatibility {
     pub ball_height: bool,
 }
 
-/// Which robots' states an answer contains.
+/// Robots whose states an answer contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feedback {
     /// Those of all robots of the team on the field.

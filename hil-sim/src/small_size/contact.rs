@@ -11,7 +11,7 @@ use super::event::PhysicsEvent;
 use super::surface::{Nearest, hull};
 use super::{STEP, World};
 
-/// What the ball may collide with.
+/// Body that the ball may collide with, by its index.
 #[derive(Clone, Copy, Debug)]
 enum Obstacle {
     Robot(usize),
@@ -142,7 +142,7 @@ impl World {
         for _ in 0..SWEEP_STEPS {
             let nearest = self.nearest(obstacle, start + motion * share);
             let gap = nearest.distance - self.parameters.ball.radius;
-            if gap <= TOUCH {
+            if gap <= CONTACT_DISTANCE {
                 let normal = Vector::new(nearest.normal[0], nearest.normal[1]);
                 return (motion.dot(normal) < 0.0).then_some((share, nearest));
             }
@@ -195,7 +195,7 @@ impl World {
     fn push_ball_out(&mut self, near: &[usize], at_goal: bool) {
         let radius = self.parameters.ball.radius;
         let walls = if at_goal { self.goal_walls.len() } else { 0 };
-        for _ in 0..PUSHES {
+        for _ in 0..PUSH_ITERATIONS {
             let mut pushed = false;
             let robots = near.iter().map(|i| Obstacle::Robot(*i));
             for obstacle in robots.chain((0..walls).map(Obstacle::GoalWall)) {
@@ -225,7 +225,7 @@ impl World {
         for &i in near {
             let nearest = self.nearest(Obstacle::Robot(i), self.ball.position);
             let depth = radius - nearest.distance;
-            if depth > WEDGED && self.ball.height < self.robots[i].body.height {
+            if depth > WEDGED_OVERLAP && self.ball.height < self.robots[i].body.height {
                 let normal = Vector::new(nearest.normal[0], nearest.normal[1]);
                 let robot = &mut self.robots[i];
                 robot.pose.position += normal * -depth;
@@ -248,13 +248,13 @@ impl World {
                 self.ball.climb = self.ball.climb.abs() * self.parameters.ball.hop_up;
                 // It never stops on top: it gets at least the speed of falling from a hop's end.
                 let normal = Vector::new(nearest.normal[0], nearest.normal[1]);
-                self.ball.velocity += normal * SLIP_OFF;
+                self.ball.velocity += normal * SLIP_OFF_SPEED;
                 self.touch(i);
             }
         }
     }
 
-    /// Whether the ball flies above the goals' walls.
+    /// True for a ball above the goals' walls.
     fn over_the_goal(&self, ball: &Ball) -> bool {
         ball.height >= self.pitch.field.goal_height
     }
@@ -288,7 +288,7 @@ impl World {
         }
     }
 
-    /// Boards round the field surface, and the walls of the room beyond them, which only flying balls reach.
+    /// Boards round the field surface, and the walls of the hall beyond them, which only flying balls reach.
     fn stay_in_boards(&mut self, before: &Ball) {
         let [x, y] = self.pitch.corner();
         let radius = self.parameters.ball.radius;
@@ -300,8 +300,8 @@ impl World {
             return;
         }
         let over = self.ball.height >= self.pitch.around.wall_height;
-        let (x, y) = if over || outside { (x + SERVER_LOOP, y + SERVER_LOOP) } else { (x, y) };
-        // The walls of the room are far enough away that a ball that passed a board stays outside.
+        let (x, y) = if over || outside { (x + HALL_MARGIN, y + HALL_MARGIN) } else { (x, y) };
+        // The walls of the hall are far enough away that a ball that passed a board stays outside.
         let bounce = if outside { self.parameters.bounce.net } else { self.parameters.bounce.wall };
         for (normal, beyond) in [
             (Vector::new(-1.0, 0.0), p.x() + radius - x),
@@ -342,12 +342,12 @@ const BOUNCES_PER_STEP: usize = 2;
 /// Maximum iterations of a sweep; each ends at a surface or at the end of the path.
 const SWEEP_STEPS: usize = 24;
 /// Iterations of pushing overlaps apart.
-const PUSHES: usize = 2;
+const PUSH_ITERATIONS: usize = 2;
 /// Overlap of ball and robot, m, above which the robot is moved, since the ball could not; smaller overlaps
 /// are rounding errors of a push.
-const WEDGED: f32 = 1e-5;
+const WEDGED_OVERLAP: f32 = 1e-5;
 /// Distance that counts as contact, m.
-pub(super) const TOUCH: f32 = 2e-5;
+pub(super) const CONTACT_DISTANCE: f32 = 2e-5;
 /// Maximum distance a robot moves in a step, m, with a reserve.
 const ROBOT_STEP: f32 = 0.012;
 /// Maximum speed of the ball, m/s.
@@ -355,6 +355,6 @@ const SPEED_MAX: f32 = super::parameters::BALL_SPEED_MAX;
 /// Maximum number of robots near a ball: more than fit.
 const NEAR_MAX: usize = 8;
 /// Speed at which a ball that fell on a robot leaves it, m/s.
-const SLIP_OFF: f32 = 0.3;
-/// Distance from the boards to the walls of the room, m.
-const SERVER_LOOP: f32 = 2.0;
+const SLIP_OFF_SPEED: f32 = 0.3;
+/// Distance from the boards to the walls of the hall, m.
+const HALL_MARGIN: f32 = 2.0;

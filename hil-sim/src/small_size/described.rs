@@ -83,7 +83,7 @@ mod tests {
     use crate::small_size::worlds::{NamedWorld, WorldChoice, WorldModel};
 
     #[test]
-    fn the_reference_robot_is_the_one_of_the_files_bit_by_bit() {
+    fn the_reference_robot_leaves_the_files_numbers_bit_by_bit() {
         for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
             let file = Parameters::of_file(league).unwrap();
             assert_eq!(&file.for_robot(&REFERENCE), file, "{league:?}");
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_half_as_fast_with_other_wheels_is_that_in_every_world() {
+    fn a_described_robots_speed_and_wheels_hold_in_every_world() {
         let hardware = HardwareSpec { speed: 0.5 * REFERENCE.hardware.speed, ..REFERENCE.hardware };
         let wheels = WheelSpec { degrees: [-45.0, -135.0, 135.0, 45.0], ..REFERENCE.wheels };
         let hull = HullSpec { front: REFERENCE.hull.front + 0.002, ..REFERENCE.hull };
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn the_built_robot_has_wheels_that_drive_in_every_world() {
+    fn the_wheels_of_the_built_robot_drive_in_every_world() {
         let named = NamedWorld::ALL.map(WorldChoice::Named);
         let choices = named.into_iter().chain((0..50).map(WorldChoice::Random));
         for choice in choices.chain([WorldChoice::Nominal]) {

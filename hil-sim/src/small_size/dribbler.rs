@@ -35,7 +35,7 @@ impl World {
             let direction = ahead.rotated(Angle::degrees(askew));
             // The ball keeps part of its motion along the front: a kick on the move goes askew.
             let left = robot.to_field([0.0, 1.0]);
-            let aside = left.dot(self.ball.velocity).clamp(-speed, speed) * ASIDE_KEPT;
+            let aside = left.dot(self.ball.velocity).clamp(-speed, speed) * ASIDE_KEPT_SHARE;
             let flat = direction * (speed * along) + left * aside;
             let velocity = flat.unit().unwrap_or(direction) * (speed * along);
             self.ball = Ball {
@@ -67,7 +67,7 @@ impl World {
             let turns = robot.order.dribbler > 0.0 && !robot.tipped;
             // A ball that has just been kicked is not caught again while it leaves, whatever the roller's
             // pull in this world.
-            let leaves = robot.kicked.is_some_and(|(at, _)| self.step - at < LEAVES);
+            let leaves = robot.kicked.is_some_and(|(at, _)| self.step - at < KICK_CLEARS_STEPS);
             if !turns || leaves || !robot.is_led(self.step) {
                 continue;
             }
@@ -80,7 +80,7 @@ impl World {
             // A held ball is turned by the roller: on leaving, it neither runs away nor comes back by its
             // spin. But the same friction turns it: a kicked ball that passes the opening in 5 ms starts
             // sliding, as any kicked ball does.
-            let turn = SOLID_SPHERE * self.parameters.dribbler.pull * STEP;
+            let turn = SPHERE_SPIN_RATIO * self.parameters.dribbler.pull * STEP;
             self.ball.spin += (self.ball.velocity - self.ball.spin).clamped(turn);
             let mass = self.parameters.ball.mass / self.robots[i].body.mass;
             let robot = &mut self.robots[i];
@@ -91,7 +91,7 @@ impl World {
 
     /// Break-beam sensors measure, and a ball that has left a robot ends its dribbling.
     pub(super) fn read_break_beams(&mut self) {
-        let (now, apart) = (self.step, self.parameters.ball.radius + SEPARATE);
+        let (now, apart) = (self.step, self.parameters.ball.radius + SEPARATION_GAP_MIN);
         for k in 0..self.near_ball.len() {
             let i = usize::from(self.near_ball[k]);
             let robot = &self.robots[i];
@@ -125,7 +125,7 @@ impl World {
     /// front of the roller.
     fn place_in_dribbler(&self, robot: &Robot) -> Option<[f32; 2]> {
         let away = self.ball.position - robot.pose.position;
-        let near = robot.body.radius + self.parameters.ball.radius + NEAR;
+        let near = robot.body.radius + self.parameters.ball.radius + NEAR_DISTANCE;
         if away.dot(away) > near * near {
             return None;
         }
@@ -158,19 +158,19 @@ fn pull(
 
 /// Change of a solid sphere's spin (as the velocity at which it would roll) over that of its velocity, by a
 /// push at its surface: m r² / I.
-const SOLID_SPHERE: f32 = 2.5;
+const SPHERE_SPIN_RATIO: f32 = 2.5;
 /// Steps in which a kicked ball is past the roller: 1.5 m/s, the slowest kick, for a reach of 12 mm and a
 /// ball's radius.
-const LEAVES: u64 = 22;
+const KICK_CLEARS_STEPS: u64 = 22;
 /// Maximum height at which the plunger touches a ball, m.
 const KICKABLE_HEIGHT: f32 = 0.02;
 /// Maximum height at which the roller and the break-beam sensor reach a ball, m.
 const DRIBBLE_HEIGHT: f32 = 0.03;
 /// Visible separation of hull and ball, m (rules: dribbling ends at visible separation); our reading of
 /// "visible".
-const SEPARATE: f32 = 0.02;
+const SEPARATION_GAP_MIN: f32 = 0.02;
 /// Distance beyond contact, m, from which the dribbler opening is not checked.
-const NEAR: f32 = 0.1;
+const NEAR_DISTANCE: f32 = 0.1;
 /// Share of its motion along the front that a kicked ball keeps: the plunger's face holds most of it by
 /// friction; estimate.
-const ASIDE_KEPT: f32 = 0.5;
+const ASIDE_KEPT_SHARE: f32 = 0.5;

@@ -24,7 +24,7 @@ pub enum PhysicsEvent {
         velocity: Vector<Field>,
         /// The ball's speed in 3-D after it, m/s.
         speed: f32,
-        /// Whether the ball left the field surface.
+        /// True where the ball left the field surface.
         chip: bool,
     },
     /// Contact of two robots.

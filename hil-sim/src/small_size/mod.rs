@@ -209,7 +209,7 @@ impl World {
         let (ball, radius) = (self.ball.position, self.parameters.ball.radius);
         for robot in self.robots.iter_mut().filter(|robot| robot.present) {
             let away = robot.pose.position - ball;
-            let room = robot.body.radius + radius + ROOM;
+            let room = robot.body.radius + radius + BALL_ROOM;
             if self.ball.height < robot.body.height && away.dot(away) < room * room {
                 let direction = away.unit().unwrap_or(Vector::new(-1.0, 0.0));
                 robot.pose.position = ball + direction * room;
@@ -317,7 +317,7 @@ impl World {
     fn follow_drag(&mut self) {
         let Some(drag) = self.ball_drag else { return };
         let offset = drag.to - self.ball.position;
-        let arrived = offset.dot(offset) < ARRIVED * ARRIVED;
+        let arrived = offset.dot(offset) < DRAG_ARRIVED_DISTANCE * DRAG_ARRIVED_DISTANCE;
         if drag.until.is_some_and(|until| arrived || until <= self.step) {
             self.ball_drag = None;
         }
@@ -392,9 +392,9 @@ pub const DRAG_STEPS: u64 = 500;
 /// Distance from the goal line, m, where contacts with goals are checked: a robot's radius and a step.
 const GOAL_ZONE: f32 = 0.15;
 /// Gap between a ball and robots that were moved off it, m.
-const ROOM: f32 = 0.001;
+const BALL_ROOM: f32 = 0.001;
 /// Distance, m, at which a pulled ball has arrived.
-const ARRIVED: f32 = 0.002;
+const DRAG_ARRIVED_DISTANCE: f32 = 0.002;
 /// Rate at which a pull closes the gap, 1/s.
 const DRAG_RATE: f32 = 10.0;
 /// Maximum speed of a pull, m/s.

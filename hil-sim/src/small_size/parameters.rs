@@ -9,7 +9,8 @@ use std::sync::LazyLock;
 use rules::{League, RobotSpec};
 use serde::{Deserialize, Serialize};
 
-use crate::four_legged::parameters::{ParameterError, numbers, within};
+use super::wheels::Wheels;
+use crate::parameters::{ParameterError, numbers, within};
 
 numbers! {
     /// The ball on the field surface and in the air.
@@ -59,7 +60,7 @@ numbers! {
         /// Share of its roll that the ball keeps across an impact, along the normal.
         spin: 0.0, 1.0;
     }
-    /// How the wheels move the body.
+    /// Accelerations and speeds of the wheels and the body.
     DriveParameters in "drive" {
         /// m/s², speeding up ahead or backwards.
         forward: 0.1, 100.0;
@@ -94,7 +95,7 @@ numbers! {
         speed_sd: 0.0, 0.3;
         /// Standard deviation of the direction.
         angle_sd_deg: 0.0, 90.0;
-        /// Where both are cut, in standard deviations.
+        /// Limit at which both are cut, in standard deviations.
         scatter_limit: 0.1, 3.0;
         /// m between ball and front.
         reach: 0.0, 0.1;
@@ -158,17 +159,7 @@ numbers! {
 
 impl NoiseParameters {
     /// Exact measurements, even of a ball behind a robot.
-    pub const NONE: Self = Self {
-        ball: 0.0,
-        robot: 0.0,
-        heading: 0.0,
-        missing_ball: 0.0,
-        missing_robot: 0.0,
-        ghost_ball: 0.0,
-        hidden_ball: 0.0,
-        odometry: 0.0,
-        gyro: 0.0,
-    };
+    pub const NONE: Self = Self::ZERO;
 }
 
 /// Dimensions and mass of a robot's body.
@@ -287,7 +278,7 @@ impl BodyParameters {
         for angle in self.wheels_deg {
             within("robot.wheels_deg", angle, -360.0, 360.0)?;
         }
-        let solved = super::wheels::Wheels::new(self).is_some();
+        let solved = Wheels::new(self.wheels_deg, self.wheel_distance).is_some();
         within("robot.wheels_deg (directions the wheels can drive in)", f32::from(u8::from(solved)), 1.0, 1.0)
     }
 }

@@ -16,32 +16,32 @@ use super::worlds::Traits;
 /// The true state of a robot.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// Its team and number.
+    /// Team and number.
     pub who: Who,
-    /// Whether it is on the field surface; else it has no effect on the world.
+    /// True on the field surface; else the robot has no effect on the world.
     pub present: bool,
-    /// Its position and heading.
+    /// Position and heading.
     pub pose: Pose<Field>,
     /// Velocity of its centre, m/s, field frame.
     pub velocity: Vector<Field>,
     /// Turning rate, rad/s, counter-clockwise.
     pub turning: f32,
-    /// Whether it lies on its side: nothing drives.
+    /// True on its side: nothing drives.
     pub tipped: bool,
-    /// Whether the break-beam sensor in its dribbler opening detects the ball.
+    /// True where the break-beam sensor in the dribbler opening detects the ball.
     pub ball_contact: bool,
-    /// Whether ball and hull are in contact.
+    /// True while ball and hull are in contact.
     pub touching: bool,
     /// Position of the ball when this robot's present dribbling started, while it lasts.
     pub dribbling_from: Option<Point<Field>>,
-    /// Its body; the simulation protocol may give each robot its own.
+    /// Body; the simulation protocol may give each robot its own.
     pub body: BodyParameters,
     limits: DriveParameters,
     /// m/s, its strongest flat and chip kick.
     pub kick_limits: [f32; 2],
     /// A bystander: no computer commands it and no referee counts it.
     pub bystander: bool,
-    /// Its differences from the nominal robot.
+    /// Differences from the nominal robot.
     pub(super) traits: Traits,
     /// Share of the wheels' motion that reaches the field surface.
     grips: f32,
@@ -52,9 +52,9 @@ pub struct Robot {
     pub(super) ordered_until: u64,
     /// Rim speeds of the order, where they do not depend on the heading.
     wanted: Wanted,
-    /// Whether the rims have reached them.
+    /// True once the rims have reached them.
     settled: bool,
-    /// It drives straight on with this velocity as long as nothing changes.
+    /// Velocity of straight motion as long as nothing changes.
     cruise: Option<Vector<Field>>,
     pub(super) charged_at: u64,
     /// The step of its last kick, and whether that was a chip.
@@ -127,7 +127,8 @@ impl Robot {
             dragged: None,
             odometer: Odometer::default(),
             grip: [[1.0; 2]; 2],
-            wheels: Wheels::new(&body).expect("a checked body has wheels that drive"),
+            wheels: Wheels::new(body.wheels_deg, body.wheel_distance)
+                .expect("a checked body has wheels that drive"),
             rims: [0.0; 4],
             used: 0.0,
         };
@@ -139,7 +140,7 @@ impl Robot {
 
     /// Replaces the body, from the next step on; one that [`BodyParameters::check`] refuses changes nothing.
     pub fn set_body(&mut self, body: BodyParameters) {
-        if let Some(wheels) = Wheels::new(&body) {
+        if let Some(wheels) = Wheels::new(body.wheels_deg, body.wheel_distance) {
             self.wheels = wheels;
             self.settled = false;
             self.body = body;
@@ -170,7 +171,7 @@ impl Robot {
         (self.traits, self.grips) = (traits, 1.0 - traits.slip);
     }
 
-    /// Its differences from the nominal robot.
+    /// Differences from the nominal robot.
     pub fn traits(&self) -> &Traits {
         &self.traits
     }
@@ -216,7 +217,7 @@ impl Robot {
         };
     }
 
-    /// Whether its order has not expired.
+    /// True while the order has not expired.
     pub fn is_led(&self, now: u64) -> bool {
         now < self.ordered_until
     }
@@ -231,7 +232,7 @@ impl Robot {
         of.full - (of.full - of.empty) * (self.used / of.energy).min(1.0)
     }
 
-    /// Whether the kicker is charged for a kick.
+    /// True for a kicker that is charged for a kick.
     pub fn charged(&self, now: u64) -> bool {
         now >= self.charged_at
     }

@@ -12,7 +12,7 @@ pub(super) struct Nearest {
     pub distance: f32,
     /// Outward normal, of length 1.
     pub normal: [f32; 2],
-    /// Whether it is on the flat front.
+    /// True on the flat front.
     pub front: bool,
 }
 
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_out_of_a_box_is_the_shortest() {
+    fn the_nearest_side_of_a_box_gives_the_normal() {
         let slab = Slab { x: [1.0, 3.0], y: [0.0, 1.0] };
         assert_eq!(slab.nearest([1.1, 0.5]).normal, [-1.0, 0.0]);
         assert_eq!(slab.nearest([2.0, 0.9]).normal, [0.0, 1.0]);

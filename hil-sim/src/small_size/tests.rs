@@ -12,7 +12,7 @@ use rules::League;
 use super::*;
 use crate::four_legged::trace::TraceHash;
 
-fn yellow(id: u8) -> Who {
+pub(super) fn yellow(id: u8) -> Who {
     Who::yellow(RobotId::new(id).unwrap())
 }
 
@@ -56,7 +56,7 @@ fn run(world: &mut World, steps: u32) -> Vec<PhysicsEvent> {
 }
 
 /// Runs with the order repeated every 10 ms, as a brain does.
-fn lead(world: &mut World, who: Who, order: Order, steps: u32) -> Vec<PhysicsEvent> {
+pub(super) fn lead(world: &mut World, who: Who, order: Order, steps: u32) -> Vec<PhysicsEvent> {
     let mut events = Vec::new();
     for step in 0..steps {
         if step % 10 == 0 {
@@ -68,17 +68,27 @@ fn lead(world: &mut World, who: Who, order: Order, steps: u32) -> Vec<PhysicsEve
     events
 }
 
-fn local(x: f32, y: f32, turn: f32) -> Order {
+pub(super) fn local(x: f32, y: f32, turn: f32) -> Order {
     let drive = Drive::Local(Twist { linear: Vector::new(x, y), angular: turn });
     Order { drive, ..Order::default() }
 }
 
-fn dribble(order: Order) -> Order {
+pub(super) fn dribble(order: Order) -> Order {
     Order { dribbler: 1.0, ..order }
 }
 
+/// True where the break-beam sensor of yellow's robot 1 detects the ball.
+pub(super) fn has_ball(world: &World) -> bool {
+    world.robot(yellow(1)).unwrap().ball_contact
+}
+
+/// True where one of the events is a kick.
+fn has_kick(events: &[PhysicsEvent]) -> bool {
+    events.iter().any(|event| matches!(event, PhysicsEvent::Kicked { .. }))
+}
+
 /// Position of the ball at the front of a robot with that pose.
-fn dribbler_point(world: &World, pose: Pose<Field>) -> Point<Field> {
+pub(super) fn dribbler_point(world: &World, pose: Pose<Field>) -> Point<Field> {
     let of = world.parameters();
     pose.to_field(Point::new(of.robot.front + of.ball.radius + 0.0001, 0.0))
 }
@@ -145,13 +155,13 @@ fn the_same_seed_gives_the_same_match_and_another_seed_another() {
 }
 
 #[test]
-fn who_was_put_down_first_decides_nothing() {
+fn the_order_of_placing_robots_has_no_effect() {
     let shuffled = (0..22_u32).map(|n| ((n * 13 + 5) % 22) as u8);
     assert_eq!(play(&mut busy(7, 0..22), 2_000), play(&mut busy(7, shuffled), 2_000));
 }
 
 #[test]
-fn in_a_crowd_no_one_stays_in_anybody_and_kicks_and_crashes_are_reported() {
+fn crowded_robots_do_not_overlap_and_their_kicks_are_events() {
     let mut world = busy(3, 0..22);
     let mut kicks = 0;
     for _ in 0..40 {
@@ -173,7 +183,7 @@ fn in_a_crowd_no_one_stays_in_anybody_and_kicks_and_crashes_are_reported() {
 }
 
 #[test]
-fn a_removed_robot_is_air() {
+fn a_removed_robot_has_no_effect() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(0.0, 0.0, 0.0));
     world.remove(yellow(1));

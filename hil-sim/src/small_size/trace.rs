@@ -52,7 +52,7 @@ mod tests {
     use crate::small_size::{Ball, Parameters};
 
     #[test]
-    fn a_world_with_a_ball_alone_hashes_to_the_bytes_the_words_lists() {
+    fn a_world_with_a_ball_alone_is_hashed_as_the_module_documents() {
         let mut world = World::new(League::DivisionB, Parameters::of(League::DivisionB).unwrap(), 0);
         world.put_ball(Ball::at(Point::new(1.0, -2.0)));
         let mut by_hand = Fnv::default();

@@ -6,8 +6,6 @@
 
 use geometry::Angle;
 
-use super::parameters::BodyParameters;
-
 /// Solved kinematics of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wheels {
@@ -19,11 +17,12 @@ pub(super) struct Wheels {
 }
 
 impl Wheels {
-    /// `None` where the wheels cannot drive in every direction.
-    pub(super) fn new(body: &BodyParameters) -> Option<Self> {
-        let rows = body.wheels_deg.map(|degrees| {
+    /// Wheels at these angles, degrees from ahead, `distance` m from the centre; `None` where they cannot
+    /// drive in every direction.
+    pub(super) fn new(wheels_deg: [f32; 4], distance: f32) -> Option<Self> {
+        let rows = wheels_deg.map(|degrees| {
             let (s, c) = Angle::degrees(degrees).sin_cos();
-            [-s, c, body.wheel_distance]
+            [-s, c, distance]
         });
         // Gauss–Jordan on (JᵀJ | Jᵀ); once per body.
         let mut system = [[0.0_f32; 7]; 3];
@@ -39,7 +38,7 @@ impl Wheels {
             system.swap(pivot, largest);
             let value = system[pivot][pivot];
             // 1e-5 of a wheel at 10 mm: rounding errors of a singular matrix stay far below.
-            if value.abs() < 1e-5 * body.wheel_distance {
+            if value.abs() < 1e-5 * distance {
                 return None;
             }
             let line = system[pivot].map(|cell| cell / value);
@@ -87,13 +86,14 @@ mod tests {
     use super::*;
     use crate::small_size::Parameters;
 
-    fn body() -> BodyParameters {
-        Parameters::of(League::DivisionB).unwrap().robot
+    fn wheels() -> Wheels {
+        let body = Parameters::of(League::DivisionB).unwrap().robot;
+        Wheels::new(body.wheels_deg, body.wheel_distance).unwrap()
     }
 
     #[test]
-    fn straight_ahead_the_right_wheels_turn_forward_and_the_left_backward_by_their_sines() {
-        let rims = Wheels::new(&body()).unwrap().rims([1.0, 0.0, 0.0]);
+    fn straight_ahead_right_rims_turn_forward_and_left_ones_back_by_their_sines() {
+        let rims = wheels().rims([1.0, 0.0, 0.0]);
         // sin 60° and sin 135°.
         let (front, back) = (0.866_025, core::f32::consts::FRAC_1_SQRT_2);
         for (rim, by_hand) in rims.into_iter().zip([front, back, -back, -front]) {
@@ -103,18 +103,17 @@ mod tests {
 
     #[test]
     fn a_turn_on_the_spot_turns_all_rims_alike() {
-        let rims = Wheels::new(&body()).unwrap().rims([0.0, 0.0, 2.0]);
+        let rims = wheels().rims([0.0, 0.0, 2.0]);
         assert_eq!(rims, [0.162; 4]);
     }
 
     #[test]
-    fn motion_undoes_rims_and_rims_that_fight_move_nothing() {
-        let wheels = Wheels::new(&body()).unwrap();
+    fn rims_and_motion_are_inverse_and_parallel_wheels_are_refused() {
+        let wheels = wheels();
         let wanted = [0.7, -1.3, 4.0];
         for (value, by) in wheels.motion(wheels.rims(wanted)).into_iter().zip(wanted) {
             assert!((value - by).abs() < 1e-5);
         }
-        let parallel = BodyParameters { wheels_deg: [90.0, -90.0, 90.0, -90.0], ..body() };
-        assert!(Wheels::new(&parallel).is_none());
+        assert!(Wheels::new([90.0, -90.0, 90.0, -90.0], 0.08).is_none());
     }
 }

@@ -42,7 +42,7 @@ pub struct ArchiveSample {
 /// frames and telemetry received a second (these five over 1 s); time since it was heard and seen, ms.
 const ROBOT_NUMBERS: usize = 9;
 
-/// The stored history.
+/// Time of a scene, s, and its JSON.
 type Encoded = (f64, Arc<str>);
 
 #[derive(Debug, Default)]
@@ -55,7 +55,7 @@ pub(crate) struct Kept {
     cases: Vec<(f64, Arc<[u8]>)>,
     /// Time of the first and the last scene, s.
     pub(crate) span: Option<(f64, f64)>,
-    /// Number of restarts.
+    /// Number of times that the history was dropped: each restart of the match is one.
     pub(crate) generation: u32,
 }
 
@@ -108,7 +108,6 @@ impl Archive {
         let _ = self.mail.send(Mail::DeferredScene(Box::new(deferred_scene)));
     }
 
-    /// Takes an event.
     pub(crate) fn keep_event(&self, match_event: MatchEvent) {
         let _ = self.mail.send(Mail::MatchEvent(Box::new(match_event)));
     }
@@ -246,17 +245,15 @@ fn sample(scene: &Scene) -> ArchiveSample {
     let robots = scene.robots.iter().map(|robot| {
         let [vx, vy] = robot.velocity;
         let vitals = robot.vitals.as_ref();
-        let link = |of: &dyn Fn(&crate::LinkWindow) -> crate::Windowed| {
-            vitals.and_then(|vitals| of(&vitals.link)[0])
-        };
+        let link = vitals.map(|vitals| vitals.link).unwrap_or_default();
         let numbers = [
             Some(crate::milli(vx.hypot(vy))),
             vitals.and_then(|vitals| vitals.battery),
-            link(&|link| link.trip_ms),
-            link(&|link| link.loss_down),
-            link(&|link| link.loss_up),
-            link(&|link| link.frames),
-            link(&|link| link.telemetry),
+            link.trip_ms[0],
+            link.loss_down[0],
+            link.loss_up[0],
+            link.frames[0],
+            link.telemetry[0],
             vitals.and_then(|vitals| vitals.silence_ms),
             vitals.map(|vitals| vitals.unseen_ms),
         ];
@@ -326,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn the_oldest_second_goes_where_no_more_fit() {
+    fn the_oldest_second_is_dropped_when_the_archive_is_full() {
         let mut kept = Kept::default();
         for i in 0..SECONDS_MAX as u32 + 10 {
             let (scene, text) = scene(f64::from(i));

@@ -1,5 +1,5 @@
-//! `deferred_scene`: a scene with deferred work. A sketch is a scene and what still has to be done to it: the
-//! page's own thread does that, so that planned paths, maps and beliefs cost the match's thread nothing.
+//! `deferred_scene`: a scene with the work that still has to be done to it. The page's own thread does that,
+//! so that planned paths, maps and beliefs cost the match's thread nothing.
 
 use std::fmt;
 
@@ -16,7 +16,7 @@ pub struct DeferredScene {
 }
 
 impl DeferredScene {
-    /// A scene that `finish` completes; sketches are finished in the order in which they are passed to the
+    /// A scene that `finish` completes; scenes are finished in the order in which they are passed to the
     /// page.
     pub fn new(scene: Scene, finish: impl FnOnce(&mut Scene) + Send + 'static) -> Self {
         Self { scene, finish: Some(Box::new(finish)) }
@@ -40,6 +40,6 @@ impl From<Scene> for DeferredScene {
 
 impl fmt::Debug for DeferredScene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Sketch").field("scene", &self.scene).finish_non_exhaustive()
+        f.debug_struct("DeferredScene").field("scene", &self.scene).finish_non_exhaustive()
     }
 }

@@ -5,7 +5,7 @@
 pub(crate) struct File {
     /// Path in the request.
     pub(crate) path: &'static str,
-    /// Its MIME type.
+    /// MIME type.
     pub(crate) kind: &'static str,
     pub(crate) text: &'static str,
 }

@@ -8,29 +8,22 @@
 
 use std::net::IpAddr;
 
+use thiserror::Error;
+
 use crate::http::Head;
 
-/// Why a request is not answered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reason for which a request is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub(crate) enum Foreign {
     /// `Host` is not an address of ours.
+    #[error("this page answers to its address or to localhost, with its own port, and to no other name")]
     Host,
     /// `Origin` is another page.
+    #[error("another page asks: only this page itself may")]
     Origin,
 }
 
-impl Foreign {
-    pub(crate) fn description(self) -> &'static str {
-        match self {
-            Self::Host => {
-                "this page answers to its address or to localhost, with its own port, and to no other name"
-            }
-            Self::Origin => "another page asks: only this page itself may",
-        }
-    }
-}
-
-/// Whether a request to the page on `port` is its own viewer's.
+/// Accepts a request to the page on `port` that its own viewer may send.
 pub(crate) fn check(head: &Head, port: u16) -> Result<(), Foreign> {
     let host = head.one("host").ok().flatten().ok_or(Foreign::Host)?;
     if !is_ours(host, port) {
@@ -70,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_was_made_to_point_here_is_not_answered() {
+    fn a_rebound_dns_name_is_not_answered() {
         for host in [
             "evil.example:8080",
             "localhost.evil.example:8080",
@@ -88,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn another_page_is_not_answered() {
+    fn a_request_from_another_page_is_not_answered() {
         for origin in [
             "http://evil.example",
             "http://localhost:8080",

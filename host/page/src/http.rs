@@ -13,10 +13,10 @@ use std::time::{Duration, Instant};
 const HEAD_MAX: usize = 16 * 1024;
 /// Lines in a head: a browser sends 20.
 const LINES_MAX: usize = 64;
-/// What a refused request may still bring before its connection ends, bytes and time: closed at once, it
-/// would lose the answer.
-const LEFTOVER_MAX: usize = 64 * 1024;
-const LEFTOVER: Duration = Duration::from_secs(1);
+/// Bytes and time that a refused request may still bring before its connection ends: closed at once, it would
+/// lose the answer.
+const LEFTOVER_LEN_MAX: usize = 64 * 1024;
+const LEFTOVER_TIME: Duration = Duration::from_secs(1);
 
 /// Status line's number and reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,11 +93,11 @@ impl Wire {
 
     /// Ends the connection after an answer to a request that was not read to its end.
     fn linger(&mut self) {
-        let (until, mut taken) = (Instant::now() + LEFTOVER, 0);
+        let (until, mut taken) = (Instant::now() + LEFTOVER_TIME, 0);
         if self.stream.shutdown(Shutdown::Write).is_err() {
             return;
         }
-        while taken < LEFTOVER_MAX
+        while taken < LEFTOVER_LEN_MAX
             && let Ok(n @ 1..) = self.receive(until)
         {
             self.received.clear();
@@ -117,12 +117,12 @@ fn timed_out(error: io::Error) -> io::Error {
     if error.kind() == io::ErrorKind::WouldBlock { io::ErrorKind::TimedOut.into() } else { error }
 }
 
-/// Why there is no request to answer.
+/// End of a connection without a request to answer.
 #[derive(Debug)]
 pub(crate) enum NoRequest {
     /// The connection has ended, failed, or sent no whole head in time.
     Gone,
-    /// It is answered with that, and its connection ends.
+    /// The request is answered with that status, and its connection ends.
     Refused(Status),
 }
 
@@ -130,7 +130,6 @@ pub(crate) enum NoRequest {
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Head {
     pub(crate) method: String,
-    /// Without the query.
     pub(crate) path: String,
     pub(crate) query: String,
     headers: Vec<(String, Vec<u8>)>,
@@ -182,7 +181,7 @@ impl Head {
             headers: headers.collect(),
             ..Self::default()
         };
-        head.keeps = request.version == Some(1) && !head.has_label("connection", "close");
+        head.keeps = request.version == Some(1) && !head.has_token("connection", "close");
         // Two readings of a body's length are how requests are smuggled: one length in plain digits, or none.
         if head.all("transfer-encoding").next().is_some() {
             return Err(Status::LENGTH_REQUIRED);
@@ -199,7 +198,7 @@ impl Head {
         if self.length > most {
             return Err(NoRequest::Refused(Status::TOO_LARGE));
         }
-        if wire.received.len() < self.length && self.has_label("expect", "100-continue") {
+        if wire.received.len() < self.length && self.has_token("expect", "100-continue") {
             wire.send(b"HTTP/1.1 100 Continue\r\n\r\n", by).map_err(|_| NoRequest::Gone)?;
         }
         while wire.received.len() < self.length {
@@ -227,10 +226,10 @@ impl Head {
         if values.next().is_some() { Err(Status::BAD_REQUEST) } else { Ok(Some(text.trim())) }
     }
 
-    /// Whether a header's list has that token, ignoring case.
-    pub(crate) fn has_label(&self, name: &str, label: &str) -> bool {
+    /// True where the header's list has that token, ignoring case (RFC 9110 §5.6.1).
+    pub(crate) fn has_token(&self, name: &str, token: &str) -> bool {
         let values = self.all(name).filter_map(|value| std::str::from_utf8(value).ok());
-        values.flat_map(|value| value.split(',')).any(|one| one.trim().eq_ignore_ascii_case(label))
+        values.flat_map(|value| value.split(',')).any(|one| one.trim().eq_ignore_ascii_case(token))
     }
 
     /// The value of `name` in the query, as it stands there: neither tokens nor numbers need escapes.
@@ -246,7 +245,6 @@ impl Head {
     }
 }
 
-/// An answer.
 #[derive(Debug)]
 pub(crate) struct Answer {
     pub(crate) status: Status,
@@ -260,18 +258,18 @@ impl Answer {
         Self { status: Status::OK, headers: vec![("content-type", kind.into())], body: body.into() }
     }
 
-    /// Plain text.
-    pub(crate) fn description(status: Status, description: impl Into<Cow<'static, str>>) -> Self {
-        let body = match description.into() {
-            Cow::Borrowed(description) => Cow::Borrowed(description.as_bytes()),
-            Cow::Owned(description) => Cow::Owned(description.into_bytes()),
+    /// Answer of that plain text, UTF-8.
+    pub(crate) fn text(status: Status, text: impl Into<Cow<'static, str>>) -> Self {
+        let body = match text.into() {
+            Cow::Borrowed(text) => Cow::Borrowed(text.as_bytes()),
+            Cow::Owned(text) => Cow::Owned(text.into_bytes()),
         };
         Self { status, ..Self::of("text/plain; charset=utf-8", body) }
     }
 
-    /// The status' reason.
+    /// Answer whose text is the reason of the status line.
     pub(crate) fn bare(status: Status) -> Self {
-        Self::description(status, status.1)
+        Self::text(status, status.1)
     }
 
     pub(crate) fn with(mut self, name: &'static str, value: impl Into<Cow<'static, str>>) -> Self {
@@ -346,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn no_bytes_are_a_request_by_accident() {
+    fn malformed_heads_are_refused() {
         for wrong in
             ["\0\0\0\0", "GET\r\n\r\n", "GET / HTTP/3.0\r\n\r\n", "GET / HTTP/1.1\r\nno header\r\n\r\n"]
         {

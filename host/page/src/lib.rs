@@ -8,9 +8,9 @@
 //! ([`Page::next_request`]).
 //!
 //! ```text
-//! match ── Sketch ─► archive: finished and encoded once ─┬─► newest ─► every viewer at its own pace
+//! match ─► scenes ─► archive: finished and encoded once ─┬─► newest ─► every viewer at its own pace
 //!   ▲                                                  └─► seconds, events, plots ─► HTTP, on demand
-//!   └──────── Request ◄── WebSocket ◄── viewers of this very page only (Origin and Host are checked)
+//!   └──────── requests ◄ WebSocket ◄── viewers of this very page only (Origin and Host are checked)
 //! ```
 //! **Invariants.** It knows no host, no simulator and no strategy: what it draws beyond ball, robots and
 //! lines are named layers of plain shapes. Slow, lost or many viewers cost the match nothing; connections are
@@ -32,7 +32,9 @@ mod request;
 mod routes;
 mod scene;
 mod server;
+mod settings;
 mod shape;
+mod shared;
 mod socket;
 mod token;
 mod viewers;
@@ -42,7 +44,7 @@ pub use archive::ArchiveSample;
 pub use deferred_scene::DeferredScene;
 pub use limits::Limits;
 pub use match_event::{DecisionNote, MatchEvent, MatchEventKind};
-pub use page::{ExplanationService, Page, PageError, PageSettings};
+pub use page::{Page, PageError};
 pub use problem::problem;
 pub use program_log::{LogEntry, LogLevel, ProgramLog};
 pub use request::{PageTeam, Powers, Refused, UserRequest};
@@ -50,6 +52,7 @@ pub use scene::{
     CameraNote, Cycle, Field, Gauge, Intent, LinkWindow, Match, MatchEnd, PerTeam, Raw, RobotDetail, Scene,
     SceneBall, SceneRobot, TeamSheet, Timer, Vitals, Windowed,
 };
+pub use settings::{ExplanationService, PageSettings};
 pub use shape::{Heat, Layer, Shape, Tone};
 pub use token::{NoToken, Token};
 pub use workbench::{MatchProblem, WorkbenchRequest};

@@ -33,7 +33,7 @@ impl Default for Limits {
             request: Duration::from_secs(20),
             // A second of a match is the longest answer: 100 kB.
             connection: Duration::from_mins(1),
-            // Browsers open 6 to a host. With the viewers' it stays below a fifth of the usual 1,024
+            // Browsers open 6 to a host. With the viewers' it stays below a fifth of the default 1,024
             // descriptors of a process.
             connections: 128,
             // Enough for a team and its guests.
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn as_many_seats_are_taken_as_there_are_whoever_takes_them_at_once() {
+    fn concurrent_viewers_take_exactly_the_seats_there_are() {
         let taken = Arc::new(AtomicUsize::new(0));
         let seats: Vec<Seat> = std::thread::scope(|scope| {
             let threads: Vec<_> = (0..8)

@@ -28,7 +28,7 @@ pub struct MatchEvent {
     pub decided: Option<DecisionNote>,
 }
 
-/// What a team's coordinator decided on a problem.
+/// Decision of a team's coordinator on a problem.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DecisionNote {
     /// The problem is the coordinator's own, as it reported it; else the host has rebuilt it from its own
@@ -40,7 +40,7 @@ pub struct DecisionNote {
     pub cycle: u32,
     /// Id of the stored case that is played; none where no case is.
     pub id: Option<u16>,
-    /// Why the decision is not simply retrieval's answer to the problem; empty where it is.
+    /// Reason for which the decision is not simply retrieval's answer to the problem; empty where it is.
     pub grounds: String,
     /// The problem, as `onetwo cases explain` takes it; none where the coordinator knew of no ball.
     #[serde(default, skip_serializing_if = "Option::is_none")]

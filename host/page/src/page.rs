@@ -2,92 +2,48 @@
 //! events, and never waits.
 
 use std::cell::RefCell;
-use std::fmt;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use thiserror::Error;
+
 use crate::archive::Archive;
 use crate::deferred_scene::DeferredScene;
-use crate::limits::Limits;
 use crate::match_event::MatchEvent;
-use crate::program_log::ProgramLog;
-use crate::request::{Powers, UserRequest};
-use crate::server::{Ask, Server, Shared};
-use crate::token::Token;
+use crate::request::UserRequest;
+use crate::server::Server;
+use crate::settings::{ExplanationService, PageSettings};
+use crate::shared::{Ask, Shared};
 use crate::viewers::{Mailbox, Viewers};
-use crate::workbench::WorkbenchRequest;
 
 /// Requests that may wait for the match; further ones are answered that it is busy.
 const REQUESTS_MAX: usize = 256;
 
-/// Settings of a page.
-#[derive(Clone, Debug)]
-pub struct PageSettings {
-    /// Address that it is served on; port 0: any free port.
-    pub listen: SocketAddr,
-    /// Title of the page.
-    pub title: String,
-    /// It plays a recording: viewers start at its beginning, not at its newest moment.
-    pub recorded: bool,
-    /// What viewers may request.
-    pub powers: Powers,
-    /// Token that a viewer needs for requests; `None`: every viewer may send them.
-    pub token: Option<Token>,
-    /// Bounds on the resources that clients can hold.
-    pub limits: Limits,
-    /// What the program reports, for viewers to read.
-    pub log: Arc<ProgramLog>,
-}
-
-/// Answers viewers' questions, on another thread than the match.
-pub trait ExplanationService: Send + Sync {
-    /// Explains why a case is retrieved: `problem` as `onetwo cases explain` takes it; the answer as it gives
-    /// it with `--json`.
-    fn explain(&self, problem: &str) -> Result<String, String>;
-
-    /// Answers a request of the case workbench; JSON in, JSON out.
-    fn workbench(&self, _request: &WorkbenchRequest) -> Result<String, String> {
-        Err("there is no workbench here".to_owned())
-    }
-
-    /// The situations that a simulation can be put into, by name.
-    fn situations(&self) -> Vec<String> {
-        Vec::new()
-    }
-}
-
-/// Why a page cannot be opened.
-#[derive(Debug)]
+/// Failure to open a page.
+#[derive(Debug, Error)]
 pub enum PageError {
     /// Another program has the port.
+    #[error(
+        "{0} belongs to another program, perhaps another match: end that, or choose another port, such as {other}",
+        other = SocketAddr::new(.0.ip(), .0.port().checked_add(1).unwrap_or(0))
+    )]
     Taken(SocketAddr),
     /// The address cannot be served.
+    #[error("{0} cannot be served ({1}): choose an address of this machine, such as 127.0.0.1:8080")]
     Listen(SocketAddr, io::Error),
 }
 
-impl fmt::Display for PageError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Taken(at) => write!(
-                f,
-                "{at} belongs to another program, perhaps another match: end that, or choose another port, such as {}:{}",
-                at.ip(),
-                at.port().checked_add(1).unwrap_or(0)
-            ),
-            Self::Listen(at, error) => {
-                write!(
-                    f,
-                    "{at} cannot be served ({error}): choose an address of this machine, such as 127.0.0.1:8080"
-                )
-            }
+impl PageError {
+    fn of(address: SocketAddr, error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::AddrInUse => Self::Taken(address),
+            _ => Self::Listen(address, error),
         }
     }
 }
-
-impl std::error::Error for PageError {}
 
 /// A page that is served until this value is dropped.
 pub struct Page {
@@ -111,10 +67,7 @@ impl Page {
         explanations: Arc<dyn ExplanationService>,
     ) -> Result<Self, PageError> {
         let listen = settings.listen;
-        let failed = |error: io::Error| match error.kind() {
-            io::ErrorKind::AddrInUse => PageError::Taken(listen),
-            _ => PageError::Listen(listen, error),
-        };
+        let failed = |error: io::Error| PageError::of(listen, error);
         let listener = TcpListener::bind(listen).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
         let viewers = Arc::new(Viewers::default());
@@ -206,10 +159,10 @@ impl Page {
     }
 
     /// Answers the viewer whose request was taken last with the reason why it is refused.
-    pub fn refuse(&self, description: impl Into<String>) {
+    pub fn refuse(&self, reason: impl Into<String>) {
         if let Some(asker) = &*self.asker.borrow() {
             // A viewer that is gone, or that asks faster than it reads, gets no reply.
-            asker.refuse(description.into());
+            asker.refuse(reason.into());
         }
     }
 

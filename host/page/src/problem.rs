@@ -10,6 +10,7 @@ use crate::scene::{Scene, SceneRobot};
 
 /// Most robots of a team in a problem.
 const PROBLEM_ROBOTS_MAX: usize = 11;
+
 #[derive(Serialize)]
 struct Problem {
     ball: [i32; 2],

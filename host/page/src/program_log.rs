@@ -12,34 +12,34 @@ const ENTRIES_MAX: usize = 2_000;
 /// Longest text of an entry, characters: the rest is cut.
 const TEXT_MAX: usize = 1_000;
 
-/// How urgent an entry is.
+/// Urgency of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LogLevel {
-    /// Something failed.
+    /// A part of the program failed.
     Error,
     /// A fault that an operator should act on now.
     Alarm,
     /// Something is not as it should be.
     Warning,
-    /// Anything else.
+    /// Information that needs no action.
     Note,
 }
 
-/// One entry.
+/// Report of the program, with its time and source.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LogEntry {
-    /// Its number, from 0, rising by one.
+    /// Number of the entry, from 0, rising by one.
     pub n: u64,
-    /// When it was reported, s since the program's start.
+    /// Time of the report, s since the program's start.
     pub at: f64,
     /// The time in the match, s, where the reporter knows one.
     pub t: Option<f64>,
-    /// How urgent it is.
+    /// Urgency of the entry.
     pub level: LogLevel,
-    /// Who reports it: "program", "blue host".
+    /// Reporter: "program", "blue host".
     pub source: String,
-    /// What is reported.
+    /// Text of the report, at most 1000 characters.
     pub text: String,
 }
 
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_without_end_is_cut() {
+    fn a_long_text_is_cut() {
         let log = ProgramLog::default();
         log.add(LogLevel::Error, "program", Some(1.0), &"ä".repeat(TEXT_MAX + 5));
         assert_eq!(log.from(0)[0].text.chars().count(), TEXT_MAX);

@@ -1,6 +1,7 @@
 //! `request`: requests of a viewer, and their refusals.
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 /// A team, by its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -47,12 +48,12 @@ pub enum UserRequest {
     Keep {},
     /// Return ball and robots to a moment that was kept.
     Return {
-        /// Its number, from 0 on.
+        /// Number of the moment, from 0 on.
         number: usize,
     },
     /// Keep a moment from a file, as `GET /api/snapshots` lists it.
     Load {
-        /// The moment.
+        /// The moment, as the page's file has it.
         snapshot: serde_json::Value,
     },
     /// Put the ball there, or move it while the match runs.
@@ -128,29 +129,28 @@ pub enum Powers {
     Simulation,
 }
 
-/// Why a request is refused.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Reason for which a request is refused.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Refused {
-    /// It cannot be parsed.
+    /// The message cannot be parsed.
+    #[error("no request: {0}")]
     Malformed(String),
-    /// It is not accepted here.
+    /// The request is not accepted by a match of these powers.
+    #[error("{}", .0.refusal())]
     NotHere(Powers),
     /// A number is out of its range.
+    #[error("{0}")]
     Range(&'static str),
 }
 
-impl std::fmt::Display for Refused {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl Powers {
+    const fn refusal(self) -> &'static str {
         match self {
-            Self::Malformed(description) => write!(f, "no request: {description}"),
-            Self::NotHere(Powers::Halt) => f.write_str(
-                "a real field takes nothing but HALT from the page; with --live-parameters parameters and kick tests too",
-            ),
-            Self::NotHere(Powers::Tune) => {
-                f.write_str("a real field takes nothing but HALT, parameters and kick tests from the page")
+            Self::Halt => {
+                "a real field takes nothing but HALT from the page; with --live-parameters parameters and kick tests too"
             }
-            Self::NotHere(_) => f.write_str("a recording cannot be changed"),
-            Self::Range(description) => f.write_str(description),
+            Self::Tune => "a real field takes nothing but HALT, parameters and kick tests from the page",
+            Self::None | Self::Simulation => "a recording cannot be changed",
         }
     }
 }
@@ -200,7 +200,7 @@ impl UserRequest {
             }
             _ => None,
         };
-        wrong.or(id).map_or(Ok(self), |description| Err(Refused::Range(description)))
+        wrong.or(id).map_or(Ok(self), |range| Err(Refused::Range(range)))
     }
 }
 
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_range_or_no_request_is_refused() {
+    fn values_out_of_range_and_unknown_requests_are_refused() {
         for wrong in [
             r#"{"ask":"speed","factor":0}"#,
             r#"{"ask":"step","ticks":0}"#,

@@ -12,7 +12,7 @@ use crate::files;
 use crate::http::{Answer, Head, Status};
 use crate::problem::problem;
 use crate::request::PageTeam;
-use crate::server::Shared;
+use crate::shared::Shared;
 use crate::workbench::{WorkbenchRequest, problems};
 
 /// Events in one answer.
@@ -22,9 +22,8 @@ const JSON: &str = "application/json";
 /// The answer to anything but a viewer's socket, worked out `within` that time.
 pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Duration) -> Answer {
     let reads = matches!(&*head.method, "GET" | "HEAD");
-    let allowed = |method, allowed: bool, answer: &dyn Fn() -> Answer| {
-        if allowed { answer() } else { Answer::bare(Status::NOT_ALLOWED).with("allow", method) }
-    };
+    let allowed =
+        |method, allowed, answer: &dyn Fn() -> Answer| if allowed { answer() } else { not_allowed(method) };
     match &*head.path {
         "/api/state" => allowed("GET, HEAD", reads, &|| state(shared, head)),
         "/api/events" => allowed("GET, HEAD", reads, &|| match_events(shared, head)),
@@ -35,9 +34,8 @@ pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Durati
         "/api/cases" => allowed("GET, HEAD", reads, &|| cases(shared, head)),
         "/api/freeze" => allowed("POST", head.method == "POST", &|| freeze(shared, &body)),
         "/api/workbench" if head.method == "POST" => workbench(shared, head, body, within),
-        "/api/workbench" => allowed("POST", false, &|| Answer::bare(Status::OK)),
         "/api/explain" if head.method == "POST" => explain(shared, body, within),
-        "/api/explain" => allowed("POST", false, &|| Answer::bare(Status::OK)),
+        "/api/workbench" | "/api/explain" => not_allowed("POST"),
         path => match path.strip_prefix("/api/second/") {
             Some(digits) => allowed("GET, HEAD", reads, &|| second(shared, digits)),
             None => allowed("GET, HEAD", reads, &|| file(path)),
@@ -45,10 +43,14 @@ pub(crate) fn answer(shared: &Shared, head: &Head, body: Vec<u8>, within: Durati
     }
 }
 
+fn not_allowed(methods: &'static str) -> Answer {
+    Answer::bare(Status::NOT_ALLOWED).with("allow", methods)
+}
+
 fn file(path: &str) -> Answer {
     match files::find(path) {
         Some(file) => Answer::of(file.kind, file.text.as_bytes()),
-        None => Answer::description(Status::NOT_FOUND, "nothing here"),
+        None => Answer::text(Status::NOT_FOUND, "nothing here"),
     }
 }
 
@@ -69,17 +71,17 @@ fn state(shared: &Shared, head: &Head) -> Answer {
 
 fn second(shared: &Shared, digits: &str) -> Answer {
     let Ok(second) = digits.parse() else {
-        return Answer::description(Status::BAD_REQUEST, "expected a whole number of seconds");
+        return Answer::text(Status::BAD_REQUEST, "expected a whole number of seconds");
     };
     match look(&shared.kept, |kept| kept.second(second)) {
         Some(bytes) => Answer::of(JSON, bytes.to_vec()).with("content-encoding", "gzip"),
-        None => Answer::description(Status::NOT_FOUND, "not kept"),
+        None => Answer::text(Status::NOT_FOUND, "not kept"),
     }
 }
 
 fn match_events(shared: &Shared, head: &Head) -> Answer {
     let Ok(from) = head.asked("from").unwrap_or("0").parse::<usize>() else {
-        return Answer::description(Status::BAD_REQUEST, "from: expected a whole number");
+        return Answer::text(Status::BAD_REQUEST, "from: expected a whole number");
     };
     let text = look(&shared.kept, |kept| {
         let all = &kept.match_events;
@@ -96,10 +98,10 @@ fn plots(shared: &Shared) -> Answer {
     Answer::of(JSON, gzip(&text).to_vec()).with("content-encoding", "gzip")
 }
 
-/// What the program has reported, from an entry on.
+/// Reports of the program, from an entry on.
 fn program_log(shared: &Shared, head: &Head) -> Answer {
     let Ok(from) = head.asked("from").unwrap_or("0").parse::<u64>() else {
-        return Answer::description(Status::BAD_REQUEST, "from: expected a whole number");
+        return Answer::text(Status::BAD_REQUEST, "from: expected a whole number");
     };
     let entries = shared.settings.log.from(from);
     Answer::of(JSON, serde_json::to_string(&entries).unwrap_or_default().into_bytes())
@@ -111,10 +113,10 @@ fn list(of: &Mutex<String>) -> Answer {
     Answer::of(JSON, text.into_bytes())
 }
 
-/// What became of every case up to a moment; an empty object before anything is known.
+/// Results of every case up to a moment; an empty object before anything is known.
 fn cases(shared: &Shared, head: &Head) -> Answer {
     let Ok(at) = head.asked("at").unwrap_or("0").parse::<f64>() else {
-        return Answer::description(Status::BAD_REQUEST, "at: expected seconds");
+        return Answer::text(Status::BAD_REQUEST, "at: expected seconds");
     };
     match look(&shared.kept, |kept| kept.cases_at(at)) {
         Some(bytes) => Answer::of(JSON, bytes.to_vec()).with("content-encoding", "gzip"),
@@ -129,7 +131,7 @@ fn explain(shared: &Shared, body: Vec<u8>, within: Duration) -> Answer {
     }))
 }
 
-/// What the case workbench asks; what changes something, or takes long, needs the token.
+/// Request of the case workbench; one that changes something, or takes long, needs the token.
 fn workbench(shared: &Shared, head: &Head, body: Vec<u8>, within: Duration) -> Answer {
     let (may_ask, powers) = (shared.may_ask(head.asked("token")), shared.settings.powers);
     let kept = shared.kept.clone();
@@ -143,9 +145,9 @@ fn workbench(shared: &Shared, head: &Head, body: Vec<u8>, within: Duration) -> A
 fn answered(answer: Result<Result<String, String>, Status>) -> Answer {
     match answer {
         Ok(Ok(text)) => Answer::of(JSON, text.into_bytes()),
-        Ok(Err(description)) => Answer::description(Status::UNPROCESSABLE, description),
-        Err(Status::TIMED_OUT) => Answer::description(Status::TIMED_OUT, "it took too long"),
-        Err(status) => Answer::description(status, "no answer"),
+        Ok(Err(reason)) => Answer::text(Status::UNPROCESSABLE, reason),
+        Err(Status::TIMED_OUT) => Answer::text(Status::TIMED_OUT, "it took too long"),
+        Err(status) => Answer::text(status, "no answer"),
     }
 }
 
@@ -157,11 +159,11 @@ struct Frozen {
 
 fn freeze(shared: &Shared, body: &[u8]) -> Answer {
     let Ok(asked) = serde_json::from_slice::<Frozen>(body) else {
-        return Answer::description(Status::UNPROCESSABLE, "expected t and team");
+        return Answer::text(Status::UNPROCESSABLE, "expected t and team");
     };
     let scene = look(&shared.kept, |kept| kept.scene_at(asked.t));
     match scene.and_then(|scene| problem(&scene, asked.team)) {
-        Some(line) => Answer::description(Status::OK, line + "\n"),
-        None => Answer::description(Status::UNPROCESSABLE, "no ball or no such team at that moment"),
+        Some(line) => Answer::text(Status::OK, line + "\n"),
+        None => Answer::text(Status::UNPROCESSABLE, "no ball or no such team at that moment"),
     }
 }

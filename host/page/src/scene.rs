@@ -38,7 +38,7 @@ pub struct Scene {
     pub alarms: Vec<String>,
     /// Number of events up to now.
     pub happened: u64,
-    /// It is paused by a viewer.
+    /// True while a viewer has paused the match.
     pub paused: bool,
     /// Simulated seconds a second; 0 where the pace is not ours to set.
     pub speed: f32,
@@ -97,7 +97,7 @@ pub struct SceneBall {
     pub confidence: f32,
     /// Past positions, oldest first.
     pub trail: Vec<[f32; 2]>,
-    /// Where it will be if no robot intercepts it, a tenth of a second from one to the next.
+    /// Positions to come if no robot intercepts the ball, a tenth of a second apart.
     pub ahead: Vec<[f32; 2]>,
 }
 
@@ -120,17 +120,17 @@ pub struct SceneRobot {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[serde(rename = "mind")]
     pub detail: Option<RobotDetail>,
-    /// Its hardware state, if it reports it.
+    /// Hardware state, if the robot reports it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vitals: Option<Vitals>,
 }
 
-/// Why a robot does what it does.
+/// State of a robot's decisions.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RobotDetail {
-    /// Its role in the team: "keeper", "defender 1", "taker".
+    /// Role in the team: "keeper", "defender 1", "taker".
     pub role: String,
-    /// Its order: "go to (1.2, 0.4)".
+    /// Order of the host: "go to (1.2, 0.4)".
     pub directive: String,
     /// Reason of the directive.
     pub why: String,
@@ -140,9 +140,9 @@ pub struct RobotDetail {
     pub step: String,
     /// The case it plays and the part it has in it: "centre/pass-around, robot 2".
     pub part: String,
-    /// Its reactive behaviour while it plays no case.
+    /// Reactive behaviour while the robot plays no case.
     pub reactive: String,
-    /// It can be given a part in a case now: its host lets it, and it reports so.
+    /// True while the robot can be given a part in a case: its host lets it, and it reports so.
     #[serde(default)]
     pub available: bool,
     /// Target and planned path.
@@ -191,7 +191,7 @@ pub struct Vitals {
     /// Since its last telemetry was received, ms.
     #[serde(default)]
     pub telemetry_ms: Option<f32>,
-    /// Its governor has limited what its logic ordered, by its last telemetry.
+    /// True while the governor limits the order of the logic, by the last telemetry.
     #[serde(default)]
     pub governed: bool,
     /// Frames that it refused.
@@ -204,7 +204,7 @@ pub struct Vitals {
     pub faults: Vec<String>,
     /// The ball is at its dribbler.
     pub ball: bool,
-    /// Its kicker is charged.
+    /// True while the kicker is charged.
     pub kicker: bool,
 }
 
@@ -232,7 +232,7 @@ pub struct LinkWindow {
 /// A camera, by the frames that it sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CameraNote {
-    /// Its number.
+    /// Number of the camera.
     pub id: u32,
     /// Camera frames received a second; worst is lowest.
     pub frames: Windowed,
@@ -258,9 +258,9 @@ pub struct Raw {
 /// The match so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Match {
-    /// What may be done now, as text.
+    /// Phase of the game, as text.
     pub phase: String,
-    /// What follows the stop, as text; empty while unknown.
+    /// Restart after the stop, as text; empty while unknown.
     pub next: String,
     /// The part of the match, as text.
     pub stage: String,
@@ -268,7 +268,7 @@ pub struct Match {
     pub stage_left: Option<f32>,
     /// Time left for placement, kick-off or free kick, s.
     pub action_left: Option<f32>,
-    /// Where the ball is to be placed.
+    /// Target position of a placement, m.
     pub placement: Option<[f32; 2]>,
     /// Share of the time in which the ball was in play, where it is counted.
     pub in_play: Option<f32>,
@@ -321,7 +321,7 @@ pub struct TeamSheet {
 pub struct Cycle {
     /// The team that plays it.
     pub team: Option<PageTeam>,
-    /// Its number, counted by the team.
+    /// Number of the cycle, counted by the team.
     pub number: u32,
     /// Number of its coordinator.
     pub coordinator: u8,
@@ -349,7 +349,7 @@ pub struct Gauge {
     pub group: String,
     /// Name of the value, within its group.
     pub name: String,
-    /// Its newest value, in `unit`.
+    /// Newest value, in `unit`.
     pub value: f32,
     /// Unit, as displayed behind the value.
     pub unit: String,

@@ -7,77 +7,29 @@
 
 use std::io;
 use std::net::{SocketAddr, TcpListener, TcpStream};
-use std::sync::atomic::AtomicUsize;
-use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use crate::archive::Kept;
 use crate::guard;
 use crate::http::{Answer, Head, NoRequest, Status, Wire};
 use crate::limits::Seat;
-use crate::page::{ExplanationService, PageSettings};
 use crate::request::UserRequest;
 use crate::routes;
+use crate::shared::{Ask, Shared};
 use crate::socket::{self, Received};
 use crate::viewers::{Mailbox, Sent, Viewers};
 
-/// A viewer that takes nothing for this long is gone.
-const GONE: Duration = Duration::from_secs(30);
-/// Where no connection can be taken (no descriptor is left), the next attempt is after that time.
-const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
+/// Time after which a viewer that takes nothing counts as gone.
+const VIEWER_TIMEOUT: Duration = Duration::from_secs(30);
+/// Pause before the next attempt where no connection can be taken: no descriptor is left.
+const ACCEPT_RETRY: Duration = Duration::from_millis(50);
 /// The longest message of a viewer, bytes: a request, a problem.
-const LABEL_MAX: usize = 16 * 1024;
+const MESSAGE_LEN_MAX: usize = 16 * 1024;
 /// The longest request of the case workbench, bytes: a case file, and the one that it replaces.
 const WORKBENCH_MAX: usize = 128 * 1024;
-/// How long the page's own connection may take that wakes its server for the end.
-const WAKE: Duration = Duration::from_millis(200);
-
-/// State shared by all request handlers.
-pub(crate) struct Shared {
-    /// The teams' parameters, as a JSON list.
-    pub(crate) parameters: Arc<Mutex<String>>,
-    /// Kept moments of the simulated field, as a JSON list.
-    pub(crate) snapshots: Arc<Mutex<String>>,
-    pub(crate) port: u16,
-    pub(crate) settings: PageSettings,
-    pub(crate) explanations: Arc<dyn ExplanationService>,
-    pub(crate) viewers: Arc<Viewers>,
-    pub(crate) kept: Arc<Mutex<Kept>>,
-    pub(crate) asks: SyncSender<Ask>,
-    pub(crate) seats: Arc<AtomicUsize>,
-}
-
-/// What a viewer asked for, and how its refusal is sent.
-pub(crate) struct Ask {
-    pub(crate) request: UserRequest,
-    pub(crate) asker: Arc<Mailbox>,
-}
-
-impl Shared {
-    /// May a viewer that brought that token ask for anything?
-    pub(crate) fn may_ask(&self, brought: Option<&str>) -> bool {
-        self.settings.token.as_ref().is_none_or(|token| brought.is_some_and(|brought| token.is(brought)))
-    }
-
-    /// Works that out in `within` on a thread of its own, and not on the connection's: the answer cannot be
-    /// called off.
-    pub(crate) fn in_time<T: Send + 'static>(
-        &self,
-        within: Duration,
-        work: impl FnOnce(&dyn ExplanationService) -> T + Send + 'static,
-    ) -> Result<T, Status> {
-        let (done, answer) = sync_channel(1);
-        let explanations = self.explanations.clone();
-        let worker = thread::Builder::new().spawn(move || done.send(work(&*explanations)));
-        worker.map_err(|_| Status::UNAVAILABLE)?;
-        answer.recv_timeout(within).map_err(|error| match error {
-            RecvTimeoutError::Timeout => Status::TIMED_OUT,
-            RecvTimeoutError::Disconnected => Status::INTERNAL,
-        })
-    }
-}
+/// Time limit of the page's own connection that wakes its server for the end.
+const WAKE_TIMEOUT: Duration = Duration::from_millis(200);
 
 /// A server that goes on until this is dropped.
 #[derive(Debug)]
@@ -108,9 +60,9 @@ impl Drop for Server {
                 [0, 0, 0, 0, 0, 0, 0, 1].into()
             });
         }
-        let woken = TcpStream::connect_timeout(&address, WAKE).is_ok();
+        let woken = TcpStream::connect_timeout(&address, WAKE_TIMEOUT).is_ok();
         if let Some(accepting) = self.accepting.take().filter(|_| woken) {
-            let until = Instant::now() + WAKE;
+            let until = Instant::now() + WAKE_TIMEOUT;
             // Where every place is taken it wakes later, and finds that the page has ended.
             while !accepting.is_finished() && Instant::now() < until {
                 thread::sleep(Duration::from_millis(1));
@@ -136,7 +88,6 @@ impl Places {
     }
 }
 
-/// One of them.
 struct Place(Arc<Places>);
 
 impl Drop for Place {
@@ -156,7 +107,7 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
             return;
         }
         let Ok((stream, _)) = accepted else {
-            thread::sleep(ACCEPT_AGAIN);
+            thread::sleep(ACCEPT_RETRY);
             continue;
         };
         // Scenes are small and needed at once.
@@ -183,10 +134,10 @@ fn serve(stream: TcpStream, shared: &Shared, place: Place) {
             return;
         }
         let answered = Instant::now() + limits.request;
-        let most = if head.path == "/api/workbench" { WORKBENCH_MAX } else { LABEL_MAX };
+        let most = if head.path == "/api/workbench" { WORKBENCH_MAX } else { MESSAGE_LEN_MAX };
         let body = match guard::check(&head, shared.port) {
             Err(foreign) => {
-                return Answer::description(Status::FORBIDDEN, foreign.description()).end(&mut wire, closes);
+                return Answer::text(Status::FORBIDDEN, foreign.to_string()).end(&mut wire, closes);
             }
             Ok(()) => head.body(&mut wire, most, closes.min(answered)),
         };
@@ -214,7 +165,7 @@ fn serve(stream: TcpStream, shared: &Shared, place: Place) {
     }
 }
 
-/// Tells browsers what this page may do.
+/// Adds the headers that restrict what browsers let this page do.
 fn guarded(mut answer: Answer) -> Answer {
     answer.headers.extend(HEADERS.map(|(name, value)| (name, value.into())));
     answer
@@ -242,7 +193,7 @@ fn sit_down(shared: &Shared, head: &Head) -> Result<(Seat, Answer), Answer> {
     // Taken before the answer: of those that come at once none can pass while the others are not counted yet.
     match Seat::take(&shared.seats, shared.settings.limits.viewers) {
         Some(seat) => Ok((seat, answer)),
-        None => Err(Answer::description(Status::UNAVAILABLE, "too many look on")),
+        None => Err(Answer::text(Status::UNAVAILABLE, "too many look on")),
     }
 }
 
@@ -250,10 +201,10 @@ fn sit_down(shared: &Shared, head: &Head) -> Result<(Seat, Answer), Answer> {
 fn look_on(mut wire: Wire, shared: &Shared, head: &Head, answer: Answer, place: Place, seat: Seat) {
     let may_ask = shared.may_ask(head.asked("token"));
     let Ok(mut out) = wire.writer() else { return };
-    if guarded(answer).send(&mut wire, head, Instant::now() + GONE).is_err() {
+    if guarded(answer).send(&mut wire, head, Instant::now() + VIEWER_TIMEOUT).is_err() {
         return;
     }
-    // Its time is its own from now on (`GONE`).
+    // Its time is its own from now on (`VIEWER_TIMEOUT`).
     drop(place);
     let mailbox = shared.viewers.join();
     let sending = mailbox.clone();
@@ -271,17 +222,15 @@ fn send(wire: &mut Wire, mailbox: &Mailbox) {
     while let Some(sent) = mailbox.next() {
         let frame = match sent {
             Sent::Scene(scene) => socket::text(&scene),
-            Sent::Refusal(description) => {
-                socket::text(&serde_json::json!({ "refused": description }).to_string())
-            }
+            Sent::Refusal(reason) => socket::text(&serde_json::json!({ "refused": reason }).to_string()),
             Sent::Pong(payload) => socket::pong(&payload),
         };
-        if wire.send(&frame, Instant::now() + GONE).is_err() {
+        if wire.send(&frame, Instant::now() + VIEWER_TIMEOUT).is_err() {
             break;
         }
     }
     // The match is over with its page: the socket closes, and viewers show it.
-    let _ = wire.send(&socket::close(), Instant::now() + WAKE);
+    let _ = wire.send(&socket::close(), Instant::now() + WAKE_TIMEOUT);
     wire.close();
 }
 
@@ -289,14 +238,14 @@ fn send(wire: &mut Wire, mailbox: &Mailbox) {
 fn listen(wire: &mut Wire, shared: &Shared, mailbox: &Arc<Mailbox>, may_ask: bool) {
     let mut begun = None;
     loop {
-        match socket::receive(wire, &mut begun, LABEL_MAX, Instant::now() + GONE) {
-            Ok(Received::Text(label)) if label == "." => mailbox.take(),
+        match socket::receive(wire, &mut begun, MESSAGE_LEN_MAX, Instant::now() + VIEWER_TIMEOUT) {
+            Ok(Received::Text(text)) if text == "." => mailbox.take(),
             // A viewer of something that stands still sends a sign that it is there.
-            Ok(Received::Text(label)) if label.is_empty() => {}
-            Ok(Received::Text(label)) => {
-                let asked = if may_ask { ask(shared, mailbox, &label) } else { Err(NO_TOKEN.to_owned()) };
-                if let Err(description) = asked {
-                    mailbox.refuse(description);
+            Ok(Received::Text(text)) if text.is_empty() => {}
+            Ok(Received::Text(text)) => {
+                let asked = if may_ask { ask(shared, mailbox, &text) } else { Err(NO_TOKEN.to_owned()) };
+                if let Err(reason) = asked {
+                    mailbox.refuse(reason);
                 }
             }
             Ok(Received::Ping(payload)) => mailbox.ping(payload),
@@ -310,8 +259,8 @@ fn listen(wire: &mut Wire, shared: &Shared, mailbox: &Arc<Mailbox>, may_ask: boo
 const NO_TOKEN: &str = "this page is open to the network: to ask for anything, open it by the address with ?token= that the program \
                         printed when it started";
 
-fn ask(shared: &Shared, asker: &Arc<Mailbox>, label: &str) -> Result<(), String> {
-    let request = UserRequest::read(label, shared.settings.powers).map_err(|refused| refused.to_string())?;
+fn ask(shared: &Shared, asker: &Arc<Mailbox>, text: &str) -> Result<(), String> {
+    let request = UserRequest::read(text, shared.settings.powers).map_err(|refused| refused.to_string())?;
     shared
         .asks
         .try_send(Ask { request, asker: asker.clone() })

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// A layer that viewers switch on and off.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
-    /// Its name in addresses and settings: `case-scopes`.
+    /// Name of the layer in addresses and settings: `case-scopes`.
     pub name: String,
     /// The label in the page's list.
     pub label: String,
@@ -56,7 +56,7 @@ pub enum Shape {
     },
     /// A closed region with straight sides.
     Polygon {
-        /// Its corners in order, m.
+        /// Corners in order, m.
         points: Vec<[f32; 2]>,
         /// Meaning, from which the page takes its colour.
         tone: Tone,
@@ -82,7 +82,7 @@ pub enum Shape {
     },
     /// A path of straight stretches.
     Line {
-        /// Its points in order, m.
+        /// Points in order, m.
         points: Vec<[f32; 2]>,
         /// Meaning, from which the page takes its colour.
         tone: Tone,

@@ -8,31 +8,32 @@ use crate::http::{Answer, Head, Status, Wire};
 /// The longest payload of a control frame, bytes.
 const CONTROL_MAX: usize = 125;
 
-const CONTINUED: u8 = 0x0;
-const TEXT: u8 = 0x1;
-const CLOSE: u8 = 0x8;
-const PING: u8 = 0x9;
-const PONG: u8 = 0xA;
-/// The last frame of its message.
-const LAST: u8 = 0x80;
-/// The payload is masked: every viewer's is.
+/// Opcodes of frames (RFC 6455 §5.2).
+const OPCODE_CONTINUATION: u8 = 0x0;
+const OPCODE_TEXT: u8 = 0x1;
+const OPCODE_CLOSE: u8 = 0x8;
+const OPCODE_PING: u8 = 0x9;
+const OPCODE_PONG: u8 = 0xA;
+/// Bit of the last frame of a message.
+const FIN: u8 = 0x80;
+/// Bit of a masked payload: every viewer's is.
 const MASKED: u8 = 0x80;
 
-/// What a viewer sent.
+/// Message of a viewer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Received {
     Text(String),
-    /// Is answered with the same bytes.
+    /// Answered with the same bytes.
     Ping(Vec<u8>),
     Pong,
     Close,
 }
 
-/// The answer that makes a socket of a connection; why it can be none.
+/// Answer that makes a socket of a connection; the error is the answer that refuses it.
 pub(crate) fn handshake(head: &Head) -> Result<Answer, Answer> {
-    let refused = |description: &'static str| Answer::description(Status::BAD_REQUEST, description);
-    if !head.has_label("connection", "upgrade") || !head.has_label("upgrade", "websocket") {
-        let answer = Answer::description(Status::UPGRADE_REQUIRED, "a WebSocket is served here");
+    let refused = |text: &'static str| Answer::text(Status::BAD_REQUEST, text);
+    if !head.has_token("connection", "upgrade") || !head.has_token("upgrade", "websocket") {
+        let answer = Answer::text(Status::UPGRADE_REQUIRED, "a WebSocket is served here");
         return Err(answer.with("upgrade", "websocket").with("connection", "upgrade"));
     }
     if head.one("sec-websocket-version") != Ok(Some("13")) {
@@ -48,7 +49,7 @@ pub(crate) fn handshake(head: &Head) -> Result<Answer, Answer> {
         .with("sec-websocket-accept", accept(key)))
 }
 
-/// What shows a viewer that its key was understood.
+/// Value of `sec-websocket-accept`, which proves to a viewer that its key was understood.
 fn accept(key: &str) -> String {
     let mut digest = sha1_smol::Sha1::new();
     digest.update(key.as_bytes());
@@ -73,22 +74,22 @@ fn base64(bytes: &[u8]) -> String {
 
 /// A frame that carries a whole text.
 pub(crate) fn text(text: &str) -> Vec<u8> {
-    frame(TEXT, text.as_bytes())
+    frame(OPCODE_TEXT, text.as_bytes())
 }
 
 /// A frame that answers a ping.
 pub(crate) fn pong(payload: &[u8]) -> Vec<u8> {
-    frame(PONG, payload)
+    frame(OPCODE_PONG, payload)
 }
 
 /// A frame that ends the socket.
 pub(crate) fn close() -> Vec<u8> {
-    frame(CLOSE, &[])
+    frame(OPCODE_CLOSE, &[])
 }
 
 fn frame(kind: u8, payload: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(payload.len() + 10);
-    bytes.push(LAST | kind);
+    bytes.push(FIN | kind);
     match payload.len() {
         short @ ..=CONTROL_MAX => bytes.push(short as u8),
         middle @ ..=0xFFFF => {
@@ -124,17 +125,17 @@ pub(crate) fn receive(
             }
         };
         match (frame.kind, begun.take()) {
-            (PING, before) => {
+            (OPCODE_PING, before) => {
                 *begun = before;
                 return Ok(Received::Ping(frame.payload));
             }
-            (PONG, before) => {
+            (OPCODE_PONG, before) => {
                 *begun = before;
                 return Ok(Received::Pong);
             }
-            (CLOSE, _) => return Ok(Received::Close),
-            (TEXT, None) => *begun = Some(frame.payload),
-            (CONTINUED, Some(mut before)) if before.len() + frame.payload.len() <= most => {
+            (OPCODE_CLOSE, _) => return Ok(Received::Close),
+            (OPCODE_TEXT, None) => *begun = Some(frame.payload),
+            (OPCODE_CONTINUATION, Some(mut before)) if before.len() + frame.payload.len() <= most => {
                 before.extend_from_slice(&frame.payload);
                 *begun = Some(before);
             }
@@ -161,7 +162,7 @@ struct Frame {
 /// The frame that these bytes begin with, unmasked, and its length; none where it is not complete.
 fn parse(bytes: &mut [u8], most: usize) -> io::Result<Option<(Frame, usize)>> {
     let &mut [first, second, ..] = bytes else { return Ok(None) };
-    let (kind, last) = (first & 0x0F, first & LAST != 0);
+    let (kind, last) = (first & 0x0F, first & FIN != 0);
     if first & 0x70 != 0 || second & MASKED == 0 {
         return Err(invalid("extensions are not agreed on, and viewers mask"));
     }
@@ -218,9 +219,9 @@ mod tests {
         assert_eq!(accept("dGhlIHNhbXBsZSBub25jZQ=="), "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=");
         assert_eq!(text("Hello"), [0x81, 0x05, 0x48, 0x65, 0x6c, 0x6c, 0x6f]);
         let hello = [0x81, 0x85, 0x37, 0xfa, 0x21, 0x3d, 0x7f, 0x9f, 0x4d, 0x51, 0x58];
-        assert_eq!(read(&hello).unwrap(), Some((TEXT, true, b"Hello".to_vec(), hello.len())));
-        assert_eq!(frame(TEXT, &[0; 256])[..4], [0x81, 0x7E, 0x01, 0x00]);
-        assert_eq!(frame(TEXT, &vec![0; 65536])[..10], [0x81, 0x7F, 0, 0, 0, 0, 0, 1, 0, 0]);
+        assert_eq!(read(&hello).unwrap(), Some((OPCODE_TEXT, true, b"Hello".to_vec(), hello.len())));
+        assert_eq!(frame(OPCODE_TEXT, &[0; 256])[..4], [0x81, 0x7E, 0x01, 0x00]);
+        assert_eq!(frame(OPCODE_TEXT, &vec![0; 65536])[..10], [0x81, 0x7F, 0, 0, 0, 0, 0, 1, 0, 0]);
         for (bytes, digits) in
             [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg==")]
         {
@@ -231,8 +232,8 @@ mod tests {
     #[test]
     fn every_length_comes_back_and_half_a_frame_waits() {
         for length in [0, 1, 125, 126, 1000] {
-            let bytes = masked(LAST | TEXT, &vec![7; length]);
-            assert_eq!(read(&bytes).unwrap(), Some((TEXT, true, vec![7; length], bytes.len())));
+            let bytes = masked(FIN | OPCODE_TEXT, &vec![7; length]);
+            assert_eq!(read(&bytes).unwrap(), Some((OPCODE_TEXT, true, vec![7; length], bytes.len())));
             for cut in 0..bytes.len().min(12) {
                 assert_eq!(read(&bytes[..cut]).unwrap(), None, "{length} {cut}");
             }
@@ -242,11 +243,11 @@ mod tests {
     #[test]
     fn what_the_standard_forbids_ends_the_socket() {
         assert!(read(&text("unmasked")).is_err());
-        assert!(read(&masked(LAST | 0x40 | TEXT, b"extended")).is_err());
-        assert!(read(&masked(PING, b"in parts")).is_err());
-        assert!(read(&masked(LAST | PING, &[0; 126])).is_err());
-        assert!(read(&masked(LAST | TEXT, &[0; 1001])).is_err());
+        assert!(read(&masked(FIN | 0x40 | OPCODE_TEXT, b"extended")).is_err());
+        assert!(read(&masked(OPCODE_PING, b"in parts")).is_err());
+        assert!(read(&masked(FIN | OPCODE_PING, &[0; 126])).is_err());
+        assert!(read(&masked(FIN | OPCODE_TEXT, &[0; 1001])).is_err());
         // A length that fills the memory is refused before anything of it has come.
-        assert!(read(&[LAST | TEXT, MASKED | 127, 0x7F, 0, 0, 0, 0, 0, 0, 0]).is_err());
+        assert!(read(&[FIN | OPCODE_TEXT, MASKED | 127, 0x7F, 0, 0, 0, 0, 0, 0, 0]).is_err());
     }
 }

@@ -3,26 +3,16 @@
 use std::fmt;
 
 use subtle::ConstantTimeEq as _;
+use thiserror::Error;
 
 /// 128 random bits as 32 hexadecimal digits: part of the page's address, and of no file.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Token(String);
 
 /// The system returned no random numbers.
-#[derive(Debug)]
+#[derive(Debug, Error)]
+#[error("the system gives no random numbers ({0}); serve the page on 127.0.0.1, which needs no token")]
 pub struct NoToken(getrandom::Error);
-
-impl fmt::Display for NoToken {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "the system gives no random numbers ({}); serve the page on 127.0.0.1, which needs no token",
-            self.0
-        )
-    }
-}
-
-impl std::error::Error for NoToken {}
 
 impl fmt::Debug for Token {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -39,13 +29,13 @@ impl Token {
         Ok(Self(bytes.iter().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()))
     }
 
-    /// Its form in the address.
+    /// Digits of the token, as in the address.
     pub fn as_str(&self) -> &str {
         &self.0
     }
 
-    /// Whether `brought` equals it. Takes the same time for any number of correct digits, so that they cannot
-    /// be guessed one by one.
+    /// True where `brought` equals the token. Takes the same time for any number of correct digits, so that
+    /// they cannot be guessed one by one.
     pub(crate) fn is(&self, brought: &str) -> bool {
         self.0.as_bytes().ct_eq(brought.as_bytes()).into()
     }
@@ -56,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_token_is_itself_and_nothing_else() {
+    fn a_token_matches_only_itself() {
         let token = Token::random().unwrap();
         let text = token.as_str().to_owned();
         assert!(text.len() == 32 && text.bytes().all(|byte| byte.is_ascii_hexdigit()), "{text}");
@@ -70,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn a_token_is_never_displayed_by_accident() {
+    fn debug_output_hides_the_token() {
         let token = Token::random().unwrap();
         assert!(!format!("{token:?}").contains(token.as_str()));
     }

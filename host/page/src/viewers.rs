@@ -52,7 +52,7 @@ impl Viewers {
     }
 }
 
-/// What is to be sent to one viewer.
+/// Scene, refusals and answer that wait for one viewer.
 #[derive(Debug)]
 pub(crate) struct Mailbox {
     mail: Mutex<Mail>,
@@ -72,7 +72,7 @@ struct Mail {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Sent {
     Scene(Arc<str>),
-    /// Why something that it asked for is not done.
+    /// Reason for which a request of the viewer is not carried out.
     Refusal(String),
     /// The answer to a ping.
     Pong(Vec<u8>),
@@ -89,8 +89,8 @@ impl Mailbox {
             if let Some(payload) = mail.ping.take() {
                 return Some(Sent::Pong(payload));
             }
-            if let Some(description) = mail.refusals.pop_front() {
-                return Some(Sent::Refusal(description));
+            if let Some(reason) = mail.refusals.pop_front() {
+                return Some(Sent::Refusal(reason));
             }
             if mail.untaken < UNTAKEN_MAX
                 && let Some(scene) = mail.scene.take()
@@ -107,11 +107,11 @@ impl Mailbox {
         self.change(|mail| mail.untaken = mail.untaken.saturating_sub(1));
     }
 
-    /// Tells the viewer why something is not done; dropped where it reads nothing.
-    pub(crate) fn refuse(&self, description: String) {
+    /// Sends the viewer the reason for which something is not done; dropped where it reads nothing.
+    pub(crate) fn refuse(&self, reason: String) {
         self.change(|mail| {
             if mail.refusals.len() < REFUSALS_MAX {
-                mail.refusals.push_back(description);
+                mail.refusals.push_back(reason);
             }
         });
     }
@@ -127,7 +127,7 @@ impl Mailbox {
         self.change(|mail| mail.gone = true);
     }
 
-    /// Whether the viewer is still there.
+    /// Applies the change; true while the viewer is still there.
     fn change(&self, with: impl FnOnce(&mut Mail)) -> bool {
         let mut mail = locked(&self.mail);
         with(&mut mail);
@@ -136,7 +136,7 @@ impl Mailbox {
     }
 }
 
-/// What a thread that failed left there is whole.
+/// The value behind the lock; a thread that panicked left it consistent.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_ends_those_that_are_there_and_those_that_come() {
+    fn the_end_closes_present_and_later_mailboxes() {
         let viewers = Viewers::default();
         let before = viewers.join();
         viewers.end();
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn a_viewer_that_does_not_read_holds_little() {
+    fn a_viewer_that_does_not_read_holds_bounded_memory() {
         let viewers = Viewers::default();
         let mailbox = viewers.join();
         (0..1000).for_each(|n| mailbox.refuse(n.to_string()));

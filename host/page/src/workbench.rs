@@ -11,11 +11,11 @@ use crate::request::{PageTeam, Powers};
 
 /// A request of the case workbench.
 pub struct WorkbenchRequest {
-    /// The request, JSON.
+    /// Request as the page sends it, JSON.
     pub text: String,
     /// The viewer brought the page's token, or none is needed.
     pub may_ask: bool,
-    /// What viewers may request of this match.
+    /// Requests that viewers may send to this match.
     pub powers: Powers,
     /// Gives the problems of the match so far, or of all of a recording.
     pub problems: Box<dyn Fn() -> Vec<MatchProblem> + Send>,
@@ -24,7 +24,7 @@ pub struct WorkbenchRequest {
 /// A problem that a team decided on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MatchProblem {
-    /// The team.
+    /// The team that decided; `None` in a match of one.
     pub team: Option<PageTeam>,
     /// Seconds since the start.
     pub t: f64,
@@ -52,7 +52,7 @@ mod tests {
     use crate::match_event::DecisionNote;
 
     #[test]
-    fn the_problems_of_a_match_are_those_of_its_decisions_the_coordinators_own_first() {
+    fn a_decisions_own_problem_takes_precedence_over_the_hosts() {
         let event =
             |t, problem, decided| MatchEvent { problem, decided, ..MatchEvent::fault(t, String::new()) };
         let own = |problem| Some(DecisionNote { problem, ..DecisionNote::default() });

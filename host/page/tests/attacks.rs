@@ -118,7 +118,7 @@ fn no_more_connections_are_served_at_once_than_the_limit() {
 }
 
 #[test]
-fn a_body_that_never_comes_and_a_reader_that_never_reads_are_given_up() {
+fn missing_bodies_and_readers_that_never_read_are_closed() {
     let page = open(Limits { request: SOON, ..Limits::default() }, None);
     let at = page.address();
     let slow =
@@ -135,7 +135,7 @@ fn a_body_that_never_comes_and_a_reader_that_never_reads_are_given_up() {
 }
 
 #[test]
-fn of_three_hundred_viewers_at_once_as_many_look_on_as_there_are_places() {
+fn of_300_simultaneous_viewers_as_many_are_served_as_there_are_seats() {
     let page = open(Limits::default(), None);
     let places = Limits::default().viewers;
     let (at, together) = (page.address(), Barrier::new(ATTACKERS));
@@ -161,7 +161,7 @@ fn of_three_hundred_viewers_at_once_as_many_look_on_as_there_are_places() {
 }
 
 #[test]
-fn a_place_is_free_again_where_the_upgrade_never_happens() {
+fn a_seat_is_free_again_when_the_upgrade_never_completes() {
     let page = open(Limits { viewers: 1, ..Limits::default() }, None);
     let at = page.address();
     let head = "Upgrade: websocket\r\nConnection: upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n";
@@ -172,7 +172,7 @@ fn a_place_is_free_again_where_the_upgrade_never_happens() {
 }
 
 #[test]
-fn without_the_token_everyone_looks_on_and_no_one_asks() {
+fn without_the_token_viewers_see_but_cannot_request() {
     let token = Token::random().unwrap();
     let page = open(Limits::default(), Some(token.clone()));
     let at = page.address();
@@ -201,7 +201,7 @@ fn without_the_token_everyone_looks_on_and_no_one_asks() {
 }
 
 #[test]
-fn what_the_match_does_not_do_is_reported_to_the_viewer_that_asked() {
+fn a_refusal_goes_to_the_viewer_that_requested() {
     let page = open(Limits::default(), None);
     let (mut other, mut asking) = (viewer(&page, "").unwrap(), viewer(&page, "").unwrap());
     asking.send(Message::text(r#"{"ask":"robot","team":"blue","id":15,"at":[0,0]}"#)).unwrap();

@@ -96,10 +96,10 @@ fn post(at: SocketAddr, path: &str, body: &str, more: &str) -> (u16, String) {
     )
 }
 
-fn ask(at: SocketAddr, description: &str) -> (u16, String) {
+fn ask(at: SocketAddr, request: &str) -> (u16, String) {
     let mut stream = TcpStream::connect(at).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
-    stream.write_all(description.as_bytes()).unwrap();
+    stream.write_all(request.as_bytes()).unwrap();
     let mut bytes = Vec::new();
     let _ = stream.read_to_end(&mut bytes);
     let answer = String::from_utf8_lossy(&bytes).into_owned();
@@ -122,7 +122,7 @@ fn the_page_and_its_files_are_served_from_the_program() {
 }
 
 #[test]
-fn a_viewer_that_comes_late_has_the_newest_scene_at_once() {
+fn a_late_viewer_gets_the_newest_scene_at_once() {
     let mut page = open(Powers::None);
     show_scene(&mut page, 1.5);
     show_scene(&mut page, 2.5);
@@ -130,7 +130,7 @@ fn a_viewer_that_comes_late_has_the_newest_scene_at_once() {
 }
 
 #[test]
-fn a_viewer_that_takes_nothing_for_a_while_goes_on_with_what_is_newest_then() {
+fn a_viewer_that_pauses_continues_with_the_newest_scene() {
     let mut page = open(Powers::None);
     let mut slow = viewer(&page);
     wait_for(|| page.viewers() == 1);
@@ -144,7 +144,7 @@ fn a_viewer_that_takes_nothing_for_a_while_goes_on_with_what_is_newest_then() {
 }
 
 #[test]
-fn showing_never_waits_whoever_looks_on() {
+fn showing_a_scene_never_waits_for_viewers() {
     let mut page = open(Powers::None);
     // None of them ever reads, and one disconnects without closing.
     let deaf: Vec<Viewer> = (0..4).map(|_| viewer(&page)).collect();
@@ -184,7 +184,7 @@ fn a_deferred_scene_is_finished_after_the_match_has_gone_on() {
 }
 
 #[test]
-fn what_has_passed_is_asked_for_by_the_second() {
+fn past_scenes_are_served_by_the_second() {
     let mut page = open(Powers::None);
     page.push(MatchEvent {
         t: 0.2,
@@ -207,14 +207,14 @@ fn what_has_passed_is_asked_for_by_the_second() {
 }
 
 #[test]
-fn foreign_pages_and_foreign_names_are_refused() {
+fn foreign_origins_and_host_names_are_refused() {
     let page = open(Powers::Simulation);
     let at = page.address();
     let port = at.port();
     for path in ["/", "/api/state", "/socket"] {
-        let (status, description) = get(at, path, &format!("Host: evil.example:{port}\r\n"));
+        let (status, answer) = get(at, path, &format!("Host: evil.example:{port}\r\n"));
         assert_eq!(status, 403, "{path}");
-        assert!(description.contains("no other name"), "{description}");
+        assert!(answer.contains("no other name"), "{answer}");
         assert_eq!(get(at, path, "Origin: http://evil.example\r\n").0, 403, "{path}");
     }
     assert_eq!(post(at, "/api/explain", "{}", "Origin: http://evil.example\r\n").0, 403);
@@ -250,8 +250,8 @@ fn a_real_field_is_only_ever_halted() {
     let page = open(Powers::Halt);
     let mut viewer = viewer(&page);
     viewer.send(Message::text(r#"{"ask":"ball","at":[0,0]}"#)).unwrap();
-    let Message::Text(description) = viewer.read().unwrap() else { panic!("no text") };
-    assert!(description.contains("nothing but HALT"), "{description}");
+    let Message::Text(answer) = viewer.read().unwrap() else { panic!("no text") };
+    assert!(answer.contains("nothing but HALT"), "{answer}");
     viewer.send(Message::text(r#"{"ask":"halt"}"#)).unwrap();
     let mut asked = None;
     wait_for_some(&mut asked, || page.next_request());
@@ -275,7 +275,7 @@ fn a_problem_is_explained_and_a_moment_frozen() {
 }
 
 #[test]
-fn a_taken_port_is_reported_with_what_to_do() {
+fn the_error_of_a_taken_port_suggests_another() {
     let page = open(Powers::None);
     let settings = PageSettings { listen: page.address(), ..settings(Powers::None) };
     let Err(error) = Page::open(settings, Arc::new(Echo)) else { panic!("the port is taken") };

@@ -18,7 +18,7 @@ export function ticksOf(low, high, most) {
   return ticks;
 }
 
-/** As many digits as tell two ticks apart. */
+/** Number of digits that distinguishes two ticks. */
 export const digitsOf = (step) => Math.max(0, Math.min(6, -Math.floor(Math.log10(step) + 1e-9)));
 
 /** Lowest and highest shown of these values: 0 is among them where all are on one side of it and near. */

@@ -26,7 +26,7 @@ async function follow() {
   try {
     tables = await getJson(`/api/cases?at=${at}`);
     have = wanted;
-  } catch { /* the link tells of it, and the next look tries again */ } finally {
+  } catch { /* the link shows the failure, and the next look tries again */ } finally {
     fetching = false;
   }
 }

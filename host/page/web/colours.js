@@ -1,4 +1,4 @@
-// colours: colours of both themes, read from page.css. Pairs that must be told apart differ in lightness as well as in hue, and never
+// colours: colours of both themes, read from page.css. Pairs that must be distinguished differ in lightness as well as in hue, and never
 // by colour alone.
 
 import { byId } from "./dom.js";

@@ -34,7 +34,7 @@ export function showControl() {
 
 const none = () => el("p", { class: "muted" }, "A recording cannot be changed. Everything else works as in a match: layers, explanations, plots, and files of a moment.");
 
-const locked = () => el("p", { class: "muted" }, "You look on. To ask for anything, open the page by the address with ?token= that the program printed when it started.");
+const locked = () => el("p", { class: "muted" }, "You are a viewer. To send requests, open the page at the address with ?token= that the program printed when it started.");
 
 const halt = () => [
   el("p", {}, store.state.powers === "tune" ? "On a real field the page can halt our robots, whatever the referee says, until the program ends, and change parameters (the tab of that name)." : "On a real field the page can do one thing: our robots stand, whatever the referee says, until the program ends."),

@@ -9,7 +9,7 @@ import { noteAt, notesOf } from "./shapes.js";
 import { changed, choose, store } from "./store.js";
 import { time } from "./transport.js";
 
-/** A hand may miss by so much, CSS pixels; a pull is told so often, ms. */
+/** Tolerance of a pointer, CSS pixels; period in which a pull is sent, ms. */
 const REACH = 14;
 const EVERY = 40;
 
@@ -19,7 +19,7 @@ export function startDrag(canvas, camera) {
   /** Holds a handle of the case on the workbench. */
   let handle = false;
   let moved = false;
-  let told = 0;
+  let sentAt = 0;
   /** Where the canvas lay when the drag began: measured at every move, it would be laid out as often. */
   let box = null;
   const spot = (event) => {
@@ -42,8 +42,8 @@ export function startDrag(canvas, camera) {
     put(held.robot, at);
     changed("frame");
     const now = performance.now();
-    if (!last && now - told < EVERY) return;
-    told = now;
+    if (!last && now - sentAt < EVERY) return;
+    sentAt = now;
     if (held.ball) ask({ ask: "ball", at });
     else ask({ ask: "robot", team: held.robot.team, id: held.robot.id, at });
   }
@@ -82,7 +82,7 @@ export function startDrag(canvas, camera) {
       const found = under(here);
       choose(found?.robot?.team ?? null, found?.robot?.id);
       if (store.chosen) changed("asked", "why");
-      // A finger cannot hover: its touch tells what lies there.
+      // A finger cannot hover: its touch shows what lies there.
       if (event.pointerType !== "mouse") hover(here);
     }
     fingers.delete(event.pointerId);

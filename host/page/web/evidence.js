@@ -4,26 +4,26 @@ import { byId, el, fill, number, table } from "./dom.js";
 import { changed } from "./store.js";
 import { bench, request, setText } from "./workbench.js";
 
-/** What was last told, and of which case. */
-let told = null;
+/** The last answer, and the name of its case. */
+let evidence = null;
 
 const fail = (error) => changed("refused", error.message);
 
 async function ask() {
   const name = bench.name;
-  told = { name, ...(await request({ do: "learned", name })) };
+  evidence = { name, ...(await request({ do: "learned", name })) };
   changed("bench");
 }
 
 /** Refuses a change, or takes the refusal back. */
 async function keep({ words, refused }) {
-  const { name } = told;
-  told = { name, ...(await request({ do: "refuse", name, words, refused: !refused })) };
+  const { name } = evidence;
+  evidence = { name, ...(await request({ do: "refuse", name, words, refused: !refused })) };
   changed("bench");
 }
 
 export function showEvidence() {
-  const shown = told?.name === bench.name ? told : null;
+  const shown = evidence?.name === bench.name ? evidence : null;
   fill(byId("bench-evidence"), JSON.stringify([shown, bench.name, shown && bench.sheet.text]), () => [
     el("h2", {}, "Evidence"),
     el("div", { class: "field-set" }, el("button", { id: "bench-learned", onclick: () => ask().catch(fail) }, "What learning has found")),
@@ -49,7 +49,7 @@ function counts(one) {
       row("every opponent's scope held", one.opponents[0]), row("some empty", one.opponents[1]),
       ...one.symmetries.map((symmetry, i) => row(SYMMETRIES[i], symmetry)).filter((_, i) => one.symmetries[i].plays),
     ], true),
-    table(["place of the ball", "plays", "to goal", "usual there"], areas, true));
+    table(["place of the ball", "plays", "to goal", "average there"], areas, true));
 }
 
 function proposals(list) {

@@ -5,7 +5,7 @@ import { post } from "./link.js";
 import { changed, store } from "./store.js";
 import { time } from "./transport.js";
 
-/** Cases that are no candidates, but are told at first. */
+/** Number of cases that are no candidates, but are listed at first. */
 const NEAREST = 12;
 
 export function dialog(title, ...body) {
@@ -53,7 +53,7 @@ async function open(title, decided, cycle, frozen) {
   }
 }
 
-/** How a terminal names the cases of this match; a directory's path is not told to viewers. */
+/** How a terminal names the cases of this match; a directory's path is not sent to viewers. */
 let cases = "";
 
 async function ask(problem) {
@@ -102,7 +102,7 @@ function body(answer, problem, every) {
   const shown = every ? rows : rows.slice(0, answer.candidates + NEAREST);
   const cells = shown.map((row) => [
     row.rank ? String(row.rank) : "", `${row.case}${row.symmetry === "identity" ? "" : ` · ${row.symmetry}`}`,
-    [VERDICTS[row.verdict] ?? row.verdict, row.verdict === "candidate" ? "fine" : "bad"], told(row),
+    [VERDICTS[row.verdict] ?? row.verdict, row.verdict === "candidate" ? "fine" : "bad"], verdictText(row),
   ]);
   const winner = rows.find((row) => row.id === answer.winner);
   const rest = rows.length - shown.length;
@@ -111,7 +111,7 @@ function body(answer, problem, every) {
     table(["rank", "case", "verdict", "why"], cells, true),
     el("p", { class: "field-set" },
       rest > 0 ? el("button", { onclick: (event) => event.target.closest(".explanation").replaceWith(body(answer, problem, true)) }, `${rest} more`) : null,
-      el("button", { onclick: () => navigator.clipboard?.writeText(problem).then(() => changed("told", "the problem is copied")) }, "Copy the problem"),
+      el("button", { onclick: () => navigator.clipboard?.writeText(problem).then(() => changed("notice", "the problem is copied")) }, "Copy the problem"),
       draftButton("Draft a case for it", JSON.parse(problem))),
     el("p", { class: "muted" }, `The same on a terminal: paste the problem into onetwo cases explain ${cases}.`));
 }
@@ -120,7 +120,7 @@ function body(answer, problem, every) {
 export const VERDICTS = { candidate: "fits", path: "path blocked", opponents: "other opponents", thr_c: "too far", robots: "too few robots", ball: "ball out of scope" };
 
 /** The margin of a verdict. */
-export function told(row) {
+export function verdictText(row) {
   switch (row.verdict) {
     case "candidate":
       return `${row.conditions} conditions, ${row.teammates} teammates, similarity ${number(row.similarity, 2)}, ${number(row.cost / 1000, 2)} m to travel in all`;

@@ -109,7 +109,7 @@ export function dropHeld() {
   changed("frame");
 }
 
-/** Layers of the case that is being played: two cases at a time are not told apart. */
+/** Layers of the case that is being played: two cases at a time cannot be distinguished. */
 const PLAYED = ["case-scopes", "ball-path", "adapted"];
 
 /** Whether that layer gives way to the ghost. */

@@ -32,7 +32,7 @@ const under = (limit) => (x) => x != null && x < limit;
 const scroll = (label, ...parts) => el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": label }, ...parts);
 
 function vitals(robots) {
-  if (robots.length === 0) return el("p", { class: "muted" }, "No robot tells how it is.");
+  if (robots.length === 0) return el("p", { class: "muted" }, "No robot reports its state.");
   const cell = (value, digits, bad) => el("td", { class: `n${bad ? " bad" : ""}` }, number(value, digits));
   const rows = robots.map(({ team, id, vitals: v }) => el("tr", { class: "pick", title: `${v.refused} frames refused, ${v.lives === 1 ? "booted once" : `booted ${v.lives} times`}`, onclick: () => choose(team, id) },
     el("td", {}, el("button", { class: `chip ${team}`, "data-vitals": `${team}${id}`, "aria-label": `${team} ${id}` }, String(id))),

@@ -2,7 +2,7 @@
 // change.
 
 import { byId, clock, el, fill, number, table } from "./dom.js";
-import { told, VERDICTS } from "./explain.js";
+import { VERDICTS, verdictText } from "./explain.js";
 import { changed } from "./store.js";
 import { bench, freezeMoment, request } from "./workbench.js";
 
@@ -62,11 +62,11 @@ function rankPart(old) {
   const words = !best ? "The case plays for the other goal."
     : answer.winner === best.id ? `Retrieved: it is the first of ${answer.candidates} that fit.`
       : best.rank ? `It fits, and is number ${best.rank} of ${answer.candidates}: ${candidates[0].case} is retrieved.`
-        : `It does not fit: ${VERDICTS[best.verdict] ?? best.verdict}, ${told(best)}.`;
+        : `It does not fit: ${VERDICTS[best.verdict] ?? best.verdict}, ${verdictText(best)}.`;
   const rows = candidates.slice(0, LISTED).map((row) => [String(row.rank), [`${row.case}${row.symmetry === "identity" ? "" : ` · ${row.symmetry}`}`, own(row) ? "fine" : null],
-    own(row) ? "this case" : !best?.rank ? "" : row.rank < best.rank ? "it wins" : "it loses", told(row)]);
+    own(row) ? "this case" : !best?.rank ? "" : row.rank < best.rank ? "it wins" : "it loses", verdictText(row)]);
   return el("div", { id: "bench-rank" }, stale(old), el("p", {}, words), rows.length ? table(["rank", "case", "against this", "margins"], rows, true) : null,
-    mine.length > 1 && !best.rank ? el("p", { class: "muted" }, mine.map((row) => `${row.symmetry}: ${told(row)}`).join("; ")) : null);
+    mine.length > 1 && !best.rank ? el("p", { class: "muted" }, mine.map((row) => `${row.symmetry}: ${verdictText(row)}`).join("; ")) : null);
 }
 
 const caseName = (name) => name ?? "no case";

@@ -3,7 +3,7 @@
 import { byId, say } from "./dom.js";
 import { changed, store } from "./store.js";
 
-/** A match that is silent for so long is told of, ms. */
+/** Silence of a match that is shown, ms. */
 const SILENT = 3000;
 /** Tries again after so long, ms; twice as long each time up to the last. */
 const AGAIN = [300, 600, 1200, 2500];
@@ -63,7 +63,7 @@ async function catchUp() {
       if (more.length === 0) break;
       store.matchEvents.push(...more);
     }
-    // What is known late is told late: a decision whose problem came after it, a kick that was fitted.
+    // Events that are known late arrive late: a decision whose problem came after it, a kick that was fitted.
     store.matchEvents.sort((a, b) => a.t - b.t);
     changed("match-events");
   } finally {
@@ -91,7 +91,7 @@ function connect() {
     tries = 0;
     heard = performance.now();
     refresh().catch(() => {});
-    tell();
+    showLink();
   };
   socket.onmessage = (event) => {
     take(event.data);
@@ -100,12 +100,12 @@ function connect() {
   };
   socket.onclose = () => {
     socket = null;
-    tell();
+    showLink();
     setTimeout(connect, AGAIN[Math.min(tries++, AGAIN.length - 1)]);
   };
 }
 
-function tell() {
+function showLink() {
   const open = isOpen();
   const over = open && store.newest?.over;
   const silent = open && !over && !store.state.recorded && store.newest && performance.now() - heard > SILENT;
@@ -121,7 +121,7 @@ function tell() {
 
 export function startLink() {
   connect();
-  setInterval(tell, 500);
+  setInterval(showLink, 500);
   // A page in the background draws no frames, and a match that stands still sends none: we are here all the same.
   setInterval(() => isOpen() && socket.send(document.hidden ? "." : ""), 5000);
 }

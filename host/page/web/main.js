@@ -85,7 +85,7 @@ function showTab(asked) {
 let noted = 0;
 
 /** A word for a few seconds. */
-function tell(words) {
+function showNotice(words) {
   const note = byId("note");
   note.textContent = words;
   Object.assign(note.style, { display: "block", left: "50%", top: "12px" });
@@ -100,8 +100,8 @@ on("chosen", () => { want(); changed("panels"); showChosen(); });
 on("asked", (tab) => { showTab(tab); showChosen(); });
 on("state", () => { want(); changed("panels"); });
 on("panels", () => { showOver(); showLegend(); showBoard(); showWhy(); showMatch(); showHealth(); showControl(); showTune(); showCases(); showDraft(); });
-on("refused", tell);
-on("told", tell);
+on("refused", showNotice);
+on("notice", showNotice);
 new ResizeObserver(want).observe(canvas);
 document.querySelectorAll("#tabs button").forEach((button) => button.addEventListener("click", () => showTab(button.dataset.tab)));
 

@@ -15,7 +15,7 @@ let axes = null;
 let drawn = "";
 let lines = [];
 
-/** Lines of robots are told apart by their dashes too. */
+/** Lines of robots are distinguished by their dashes too. */
 const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3], [4, 2], [1, 2]];
 
 const ofRobots = () => OF_ROBOTS.find(([key]) => key === chosen.name);
@@ -121,11 +121,11 @@ export function showPlot(scene) {
   lines.forEach(({ robot, points }, i) => axes.course(points, colourOf(robot), DASHES[i % DASHES.length], gap()));
   if (time.at >= first && time.at <= last) axes.line(axes.x(time.at), axes.top, axes.x(time.at), axes.bottom, colours.text);
   if (cursor !== null) axes.line(axes.x(cursor), axes.top, axes.x(cursor), axes.bottom, colours.accent, [3, 3]);
-  tell(canvas, unit);
+  describe(canvas, unit);
 }
 
 /** Values at the cursor, or at the shown moment. */
-function tell(canvas, unit) {
+function describe(canvas, unit) {
   const t = cursor ?? time.at;
   const value = ({ robot, points }) => `${robot ? robot.replace(/(\d+)$/, " $1") + " " : ""}${number(valueAt(points, t, gap() + 0.6), 2)} ${unit}`;
   const none = lines.length === 0 ? "no robot is chosen" : lines.every(({ points }) => points.length === 0) ? "nothing is known of this time" : null;

@@ -10,7 +10,7 @@ import { seek, span, time } from "./transport.js";
 
 let sampled = -1;
 
-// One sample a second, as the program keeps them: the page adds those that come while it looks on.
+// One sample a second, as the program keeps them: the page adds those that come while it is open.
 on("newest", (scene) => {
   const second = Math.floor(scene.t);
   if (second === sampled) return;

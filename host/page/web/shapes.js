@@ -21,7 +21,7 @@ function finish({ context, pixel }, shape, fill) {
 let hatched = null;
 on("colours", () => (hatched = null));
 
-/** What is to be kept out of is hatched: it is told from the rest without any colour. */
+/** What is to be kept out of is hatched: it differs from the rest without any colour. */
 function hatch(context, pixel) {
   if (!hatched) {
     const tile = new OffscreenCanvas(8, 8);
@@ -90,7 +90,7 @@ const DRAW = {
   heat: drawHeat,
 };
 
-/** What is told of the shape under a point, the topmost first. */
+/** Notes of the shapes under a point, the topmost first. */
 export function noteAt(layers, shown, [x, y]) {
   for (const layer of [...layers].reverse()) {
     if (!shown(layer.name, layer.on)) continue;

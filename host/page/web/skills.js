@@ -7,13 +7,13 @@ import { request } from "./workbench.js";
 /** How often the course of the tries is asked for, ms. */
 const EVERY = 500;
 
-let told = null;
+let answer = null;
 let asked = 0;
 const chosen = { skill: "kick", world: "nominal", tries: 20, seed: 1 };
 
 async function inquire(body) {
   asked = performance.now();
-  told = await request(body);
+  answer = await request(body);
 }
 
 const fail = (error) => changed("refused", error.message);
@@ -27,14 +27,14 @@ export const skillPart = () => [
 
 export function showSkills() {
   if (!byId("skill-choice")) return;
-  const runs = told?.report && !told.report.over;
-  if (!told ? performance.now() - asked > 4 * EVERY : runs && performance.now() - asked > EVERY) inquire({ do: "tries" }).catch(() => {});
-  fill(byId("skill-choice"), `${Boolean(told)} ${runs} ${store.state.may_ask}`, choice);
-  fill(byId("skill-result"), JSON.stringify(told?.report ?? null), result);
+  const runs = answer?.report && !answer.report.over;
+  if (!answer ? performance.now() - asked > 4 * EVERY : runs && performance.now() - asked > EVERY) inquire({ do: "tries" }).catch(() => {});
+  fill(byId("skill-choice"), `${Boolean(answer)} ${runs} ${store.state.may_ask}`, choice);
+  fill(byId("skill-result"), JSON.stringify(answer?.report ?? null), result);
 }
 
 function choice() {
-  if (!told) return [];
+  if (!answer) return [];
   const select = (name, all) => {
     const made = el("select", { id: `skill-${name}`, "aria-label": name === "skill" ? "Skill" : "World", onchange: (event) => (chosen[name] = event.target.value) }, ...all.map((one) => el("option", {}, one)));
     made.value = chosen[name];
@@ -42,15 +42,15 @@ function choice() {
   };
   const tries = el("input", { type: "number", id: "skill-tries", min: "1", max: "500", value: String(chosen.tries), "aria-label": "Tries", onchange: (event) => (chosen.tries = Number(event.target.value)) });
   return [
-    select("skill", told.choices.skills), "in", select("world", told.choices.worlds), tries,
+    select("skill", answer.choices.skills), "in", select("world", answer.choices.worlds), tries,
     el("button", { id: "skill-try", onclick: () => inquire({ do: "tries", plan: chosen }).catch(fail) }, "Try"),
-    told.report && !told.report.over ? el("button", { id: "skill-stop", onclick: () => inquire({ do: "stop_tries" }).catch(fail) }, "Stop") : null,
+    answer.report && !answer.report.over ? el("button", { id: "skill-stop", onclick: () => inquire({ do: "stop_tries" }).catch(fail) }, "Stop") : null,
   ].filter(Boolean);
 }
 
 function result() {
-  const { report } = told ?? {};
-  if (!report) return el("p", { class: "muted" }, "Each try starts from the beginning, with the usual parameters, through world, cameras, host, radio and robots. On a real field only kickers are tested: tab Parameters.");
+  const { report } = answer ?? {};
+  if (!report) return el("p", { class: "muted" }, "Each try starts from the beginning, with the default parameters, through world, cameras, host, radio and robots. On a real field only kickers are tested: tab Parameters.");
   const { row, tries, failed, error, over } = report;
   const seconds = (time) => (time == null ? "–" : `${number(time, 2)} s`);
   return [

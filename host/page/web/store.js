@@ -1,4 +1,4 @@
-// store: state of the page: one object, and listeners that are told of changes.
+// store: state of the page: one object, and listeners that are called on changes.
 
 export const store = {
   /** From the program: title, what may be asked, recorded or live. */

@@ -5,7 +5,7 @@ import { ask, getJson, post } from "./link.js";
 import { placed } from "./put.js";
 import { changed, on, recall, remember, store } from "./store.js";
 
-/** This moment's address for others: they look on, and do not ask in our place. */
+/** This moment's address for others: they view, and send no requests in our place. */
 function shared() {
   const url = new URL(location.href);
   url.searchParams.delete("token");
@@ -104,19 +104,19 @@ export function advance(now, passed) {
 const WHOLE = 2000;
 let end = { at: 0, since: 0 };
 
-/** Whether a moment is waited for that is not there yet. Once it will not come, it is told where the match ends. */
+/** Whether a moment is waited for that is not there yet. Once it cannot come, a notice names the end of the match. */
 function reach(last) {
   const now = performance.now();
   if (last !== end.at) end = { at: last, since: now };
   if (last === 0 || time.at <= last) return false;
   if (store.state.span === undefined) return true;
   if (!store.state.recorded) {
-    changed("told", `${clock(time.at)} is not played yet: this is the newest moment`);
+    changed("notice", `${clock(time.at)} is not played yet: this is the newest moment`);
     goLive();
     return false;
   }
   if (now - end.since <= WHOLE) return true;
-  changed("told", `${clock(time.at)} is not there: this ends at ${clock(last)}`);
+  changed("notice", `${clock(time.at)} is not there: this ends at ${clock(last)}`);
   time.at = last;
   address();
   return false;
@@ -170,14 +170,14 @@ export function jump(direction) {
 const BEFORE_GOAL = 5;
 export const startOf = (matchEvent) => Math.max(span()[0], matchEvent.t - (matchEvent.kind === "goal" ? BEFORE_GOAL : 1));
 
-/** To the way to the goal before or after this moment; whose goal is told. */
+/** To the way to the goal before or after this moment; a notice names the team. */
 export function jumpGoal(direction) {
   const goals = store.matchEvents.filter((h) => h.kind === "goal");
   const goal = direction > 0 ? goals.find((h) => startOf(h) > time.at + 0.05) : goals.findLast((h) => startOf(h) < time.at - 0.6);
   if (goal) seek(startOf(goal));
   // The start of a recording may be nearer to its first goal.
   const coming = goal ?? (direction > 0 ? goals.find((h) => h.t > time.at) : undefined);
-  changed("told", coming ? `${clock(coming.t)}: ${coming.words}` : `no goal ${direction > 0 ? "after" : "before"} this moment`);
+  changed("notice", coming ? `${clock(coming.t)}: ${coming.words}` : `no goal ${direction > 0 ? "after" : "before"} this moment`);
 }
 
 export function mark() {
@@ -196,7 +196,7 @@ async function freeze(choice) {
     const link = el("a", { href: URL.createObjectURL(new Blob([text], { type: "text/plain" })), download: name });
     link.click();
     URL.revokeObjectURL(link.href);
-    changed("told", `${name} is saved`);
+    changed("notice", `${name} is saved`);
   } catch (error) {
     changed("refused", error.message);
   }
@@ -218,7 +218,7 @@ function asked() {
   if (words === undefined) return null;
   const t = words.trim() === "" ? NaN : Number(words);
   if (Number.isFinite(t) && t >= 0) return t;
-  changed("told", `the address names no moment: #t=${words}, seconds are expected, such as #t=12.5`);
+  changed("notice", `the address names no moment: #t=${words}, seconds are expected, such as #t=12.5`);
   return null;
 }
 
@@ -235,9 +235,9 @@ export function startTransport() {
     address();
     try {
       await navigator.clipboard.writeText(shared());
-      changed("told", "the address of this moment is copied");
+      changed("notice", "the address of this moment is copied");
     } catch {
-      changed("told", shared());
+      changed("notice", shared());
     }
   });
   byId("pace").addEventListener("change", (event) => (time.pace = Number(event.target.value)));

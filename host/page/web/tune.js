@@ -1,4 +1,4 @@
-// tune: tab Parameters: a team's parameters with unit, range and usual value; those that may change during play are set here, the
+// tune: tab Parameters: a team's parameters with unit, range and default; those that may change during play are set here, the
 // others are read at the start.
 
 import { byId, el, fill, number, say } from "./dom.js";
@@ -43,11 +43,11 @@ function draw() {
 }
 
 function note() {
-  if (store.state.recorded) return "A recording has its teams' settings in its header: replay FILE --json tells them.";
+  if (store.state.recorded) return "A recording has its teams' settings in its header: replay FILE --json prints them.";
   if (teams.length === 0) return "No team's parameters are known yet.";
   if (store.state.powers === "halt") return "Read only: to change parameters on a real field start control with --live-parameters.";
-  if (!mayChange()) return "You look on: to change something, open the page by the address with ?token= that the program printed.";
-  return "Enter or leaving a box sets a value; an empty box is the usual one. Changes hold from the next plan on.";
+  if (!mayChange()) return "You are a viewer: to change something, open the page at the address with ?token= that the program printed.";
+  return "Enter or leaving a box sets a value; an empty box sets the default. Changes hold from the next plan on.";
 }
 
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
@@ -59,7 +59,7 @@ function team({ team: name, list, kicks, roll, test, file, toml }) {
   const rows = (some) => el("div", { class: "params" }, some.flatMap((one) => (one.each_robot ? robots(name, one, list) : [row(name, one)])));
   const changed = list.filter((one) => one.value != null && !same(one.value, one.default)).length;
   return [
-    el("h2", {}, el("span", { class: `chip ${name}` }, name[0].toUpperCase()), ` ${name}: ${changed} of ${list.length} not as usual`),
+    el("h2", {}, el("span", { class: `chip ${name}` }, name[0].toUpperCase()), ` ${name}: ${changed} of ${list.length} changed`),
     rows(live),
     roll ? el("p", { class: "muted" }, `Rolling ball: learned ${number(roll.value, 3)} ± ${number(roll.error, 3)} m/s² of ${roll.samples} balls.`) : null,
     learned(name, kicks, list),
@@ -84,7 +84,7 @@ function row(name, one) {
   const id = `tune-${name}-${label.replaceAll(/[ .]/g, "-")}`;
   const differs = one.value != null && !same(one.value, one.default);
   const range = one.range ? `, ${one.range[0]} to ${one.range[1]}${one.unit && ` ${one.unit}`}` : one.unit ? `, ${one.unit}` : "";
-  const about = el("small", { class: "muted", id: `${id}-about` }, `${one.meaning}${range}${one.default == null ? "" : `; usual: ${one.default}`}`);
+  const about = el("small", { class: "muted", id: `${id}-about` }, `${one.meaning}${range}${one.default == null ? "" : `; default: ${one.default}`}`);
   const value = one.live && mayChange() ? box(name, one, id) : el("output", { id, class: "value" }, words(one.value) || "–");
   return el("div", { class: differs ? "param differs" : "param", "data-key": label },
     el("label", { for: id }, label), value, el("span", { class: "unit" }, one.unit), about);
@@ -92,7 +92,7 @@ function row(name, one) {
 
 function box(name, one, id) {
   const isNumber = one.range != null;
-  const made = el("input", { id, type: isNumber ? "number" : "text", value: words(one.value), placeholder: words(one.default) || "usual", "aria-describedby": `${id}-about`,
+  const made = el("input", { id, type: isNumber ? "number" : "text", value: words(one.value), placeholder: words(one.default) || "default", "aria-describedby": `${id}-about`,
     ...(isNumber ? { min: one.range[0], max: one.range[1], step: "any" } : {}) });
   let sent = made.value;
   const set = () => {
@@ -113,7 +113,7 @@ function box(name, one, id) {
 function change(name, { key, robot }, value) {
   ask({ ask: "parameter", team: name, key, ...(robot == null ? {} : { robot }), value });
   asked = 0;
-  say(byId("tune-note"), `${name}: ${key}${robot == null ? "" : ` of robot ${robot}`} = ${value ?? "usual"}`);
+  say(byId("tune-note"), `${name}: ${key}${robot == null ? "" : ` of robot ${robot}`} = ${value ?? "default"}`);
 }
 
 /** What was learned of each robot's kicker; a press takes it as its gain. */

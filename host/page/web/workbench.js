@@ -26,16 +26,16 @@ export const bench = {
   taken: null,
 };
 
-/** Asks the program; its refusals are told. */
+/** Asks the program; its refusals are shown. */
 export async function request(what) {
   return JSON.parse(await post("/api/workbench", JSON.stringify(what)));
 }
 
-const told = (error) => changed("refused", error.message);
+const showRefusal = (error) => changed("refused", error.message);
 
 /** Changes wait for the one before: each is made on the text that it left. */
 let queue = Promise.resolve();
-const inTurn = (work) => (queue = queue.then(work).catch(told));
+const inTurn = (work) => (queue = queue.then(work).catch(showRefusal));
 
 function show(sheet) {
   Object.assign(bench, { sheet, name: sheet.name });
@@ -123,7 +123,7 @@ export async function preview(change, from) {
       const sheet = await changing(asked.from, asked.change);
       if (drag === dropped) Object.assign(bench, { sheet });
       changed("frame");
-    } catch { /* the drop tells */ }
+    } catch { /* the drop shows the error */ }
     await pause;
   }
   previewing = false;
@@ -166,20 +166,20 @@ export const rename = (name) => inTurn(async () => {
 export const checkAll = () => inTurn(async () => {
   const sheet = await request({ do: "check", name: bench.name, text: bench.sheet.text });
   show(sheet);
-  changed("told", sheet.findings.length ? `${sheet.findings.length} findings` : "cases check finds nothing");
+  changed("notice", sheet.findings.length ? `${sheet.findings.length} findings` : "cases check finds nothing");
 });
 
 export const save = () => inTurn(async () => {
   bench.taken = null;
   const sheet = await request({ do: "save", name: bench.name, text: bench.sheet.text, over: bench.opened }).catch((error) => {
-    // Before a file is overwritten, the viewer is told what it holds.
+    // Before a file is overwritten, the viewer sees what it holds.
     if (bench.opened === null && bench.list?.names.includes(bench.name)) bench.taken = bench.name;
     changed("bench");
     throw error;
   });
   bench.opened = sheet.text;
   show(sheet);
-  changed("told", `${sheet.name}.toml is saved; the next match is played with it`);
+  changed("notice", `${sheet.name}.toml is saved; the next match is played with it`);
   bench.list = await request({ do: "list" });
   changed("bench");
 });

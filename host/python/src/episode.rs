@@ -7,14 +7,14 @@ use hil_sim::{Stream, TraceHash};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
-/// What an episode is of.
+/// League, robots and times of an episode.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Field and physics.
+    /// League, whose field and physics are simulated.
     pub league: League,
     /// Number of own robots.
     pub own: usize,
-    /// Number of opponents.
+    /// Number of standing opponents on the field.
     pub opponents: usize,
     /// Control period, ms: orders stay as they are in between.
     pub period_ms: u32,
@@ -22,7 +22,7 @@ pub struct Settings {
     pub time_limit_s: f64,
 }
 
-/// How an episode ended.
+/// End of an episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The ball is in the opponents' goal.
@@ -36,7 +36,7 @@ pub enum End {
 }
 
 impl End {
-    /// Its name in Python.
+    /// Name in Python.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Goal => "goal",
@@ -47,18 +47,18 @@ impl End {
     }
 }
 
-/// A running episode.
+/// Episode with its world, advanced action by action.
 #[derive(Clone, Debug)]
 pub struct Episode {
     settings: Settings,
     parameters: &'static Parameters,
-    /// The simulated world.
+    /// True state of ball and robots.
     pub world: World,
     trace: TraceHash,
     steps: u32,
     /// Reward of the last step.
     pub reward: f32,
-    /// How it ended, once it has.
+    /// End of the episode, once it has ended.
     pub end: Option<End>,
 }
 
@@ -214,7 +214,7 @@ fn line_up(world: &mut World, settings: &Settings, seed: u64) {
             let mut place = Point::default();
             for _ in 0..DRAWS_MAX {
                 place = Point::new(side * draw.between(0.0, length), draw.between(-width, width));
-                if taken.iter().all(|other| other.distance(place) > APART) {
+                if taken.iter().all(|other| other.distance(place) > START_APART_MIN) {
                     break;
                 }
             }
@@ -246,6 +246,6 @@ const HEIGHT_SCALE: f32 = 1.0;
 /// Least distance of start positions from the field's lines, m.
 const EDGE: f32 = 0.3;
 /// Least distance between start positions, m: three robots' radii.
-const APART: f32 = 0.27;
+const START_APART_MIN: f32 = 0.27;
 /// Draws for a start position; after that the last one is taken, and the physics parts the robots.
 const DRAWS_MAX: usize = 100;

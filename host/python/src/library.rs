@@ -80,7 +80,7 @@ impl Library {
 }
 
 impl Library {
-    /// Its handle.
+    /// Case base and library, to share with other objects.
     pub fn handle(&self) -> LibraryHandle {
         self.handle
     }

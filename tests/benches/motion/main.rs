@@ -16,8 +16,8 @@ use match_tests::bench;
 use workloads::motion::Work;
 
 fn main() -> ExitCode {
-    bench::run("motion", USAGE, |description| {
-        Some(match *description {
+    bench::run("motion", USAGE, |arguments| {
+        Some(match *arguments {
             ["--work", work, rounds] => host::work(work, rounds),
             [] => report(false, true),
             ["--write"] => report(true, true),

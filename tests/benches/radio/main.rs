@@ -10,8 +10,8 @@ use firmware_build::count::write_between;
 use match_tests::bench;
 
 fn main() -> ExitCode {
-    bench::run("radio", USAGE, |description| {
-        Some(match *description {
+    bench::run("radio", USAGE, |arguments| {
+        Some(match *arguments {
             [] => report(false),
             ["--write"] => report(true),
             _ => return None,

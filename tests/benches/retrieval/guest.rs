@@ -31,9 +31,9 @@ impl Board {
             ("-device", loader(&table_file, TABLE_ADDRESS)),
             ("-device", loader(&problem_file, PROBLEMS_ADDRESS)),
         ];
-        let description: Vec<String> =
+        let arguments: Vec<String> =
             devices.into_iter().flat_map(|(label, device)| [label.to_owned(), device]).collect();
-        self.0.lines(&description, |line| line.parse().ok(), problems.len())
+        self.0.lines(&arguments, |line| line.parse().ok(), problems.len())
     }
 }
 

@@ -23,8 +23,8 @@ use guest::Board;
 use match_tests::bench;
 
 fn main() -> ExitCode {
-    bench::run("retrieval", USAGE, |description| {
-        Some(match *description {
+    bench::run("retrieval", USAGE, |arguments| {
+        Some(match *arguments {
             ["--work", directory, method, rounds] => rounds
                 .parse()
                 .map_err(|_| "rounds".into())

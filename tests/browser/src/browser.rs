@@ -39,8 +39,8 @@ impl fmt::Display for BrowserError {
             Self::Missing => f.write_str(
                 "no Chromium is found: install it (Debian: apt-get install chromium), or name one in ONETWO_BROWSER",
             ),
-            Self::Start(description) => write!(f, "the browser does not start: {description}"),
-            Self::Answer(description) => write!(f, "the browser: {description}"),
+            Self::Start(reason) => write!(f, "the browser does not start: {reason}"),
+            Self::Answer(reason) => write!(f, "the browser: {reason}"),
         }
     }
 }

@@ -236,7 +236,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn base64_is_read_as_its_standard_has_it() {
+    fn base64_decodes_the_examples_of_its_standard() {
         // RFC 4648, section 10.
         for (text, bytes) in
             [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYmFy", "foobar")]

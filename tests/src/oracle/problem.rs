@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn a_malformed_line_says_where() {
+    fn the_error_of_a_malformed_line_names_the_place() {
         let cases = [
             (r#"{"ball":[0,0],"defending":"yellow","teammates":{"3":[1]},"opponents":[]}"#, "teammates.3"),
             (

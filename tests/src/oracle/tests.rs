@@ -42,21 +42,8 @@ r_min = 100
 r_max = 300
 "#;
 
-/// The example of docs/case-format.md §1.
-const PASS_AROUND: &str = r#"
-intent = "Two attackers at the centre line, a defender ahead: pass around it and shoot."
-defending = "yellow"
-ball = { at = [-600, 0], scope = [450, 250] }
-[[teammates]]
-at = [-720, 0]
-gameplay = ["get_ball", { pass_ball = 2 }]
-[[teammates]]
-at = [300, 900]
-gameplay = ["wait", { receive_ball = 1 }, { kick = "goal" }]
-[[opponents]]
-at = [-150, -35]
-scope = [300, 225]
-"#;
+/// The example of docs/case-format.md §1, as it is in the built-in library.
+const PASS_AROUND: &str = include_str!("../../../casebase/library/cases/four-legged/center/pass-around.toml");
 
 fn library(cases: &[(&str, &str)]) -> Library {
     let files: BTreeMap<String, String> =
@@ -73,8 +60,10 @@ fn number(answer: &Value, key: &str) -> f64 {
 }
 
 #[test]
-fn the_example_of_the_agreement_is_answered_as_printed() {
-    let library = library(&[("center/pass-around", PASS_AROUND)]);
+fn the_documented_example_has_the_documented_answer() {
+    // With a shot after the reception.
+    let case = PASS_AROUND.replace("{ receive_ball = 1 }", "{ receive_ball = 1 }, { kick = \"goal\" }");
+    let library = library(&[("center/pass-around", &case)]);
     let line = r#"{"ball":[-600,10],"defending":"yellow","teammates":{"1":[-700,0],"3":[200,800]},"opponents":[[-150,40]]}"#;
     let answer = ask(&library, line);
     assert_eq!(answer["case"], "center/pass-around");
@@ -96,7 +85,7 @@ fn the_example_of_the_agreement_is_answered_as_printed() {
 }
 
 #[test]
-fn the_four_words_mirror_goal_points_and_kicks() {
+fn the_four_symmetries_mirror_goal_points_and_kicks() {
     let kick = |kind: &str| {
         format!(
             r#"
@@ -130,7 +119,7 @@ gameplay = ["get_ball", {{ dribble_to = [1200, 600] }}, {{ kick = "{kind}" }}]
 }
 
 #[test]
-fn a_later_get_ball_goes_to_the_lowest_robot_that_waits_for_it_and_a_goal_is_never_shifted() {
+fn a_later_get_ball_goes_to_the_lowest_waiting_robot() {
     let library = library(&[(
         "front/rebound",
         r#"
@@ -156,7 +145,7 @@ gameplay = [{ turn = { heading_deg = 90 } }]
 }
 
 #[test]
-fn the_sum_is_minimised_first_and_a_robot_too_far_then_rejects() {
+fn the_distance_sum_is_minimised_before_a_distant_robot_rejects() {
     // On one line: tm1 at 0, tm2 at 100 (adapted). Robots at 1450 (id 2) and 1700 (id 5): both maps cost
     // 3050; the smaller list [2, 5] wins and sends robot 5 over 1600 mm, though [5, 2] would send it over
     // 1700.

@@ -15,7 +15,7 @@ use protocol::team::{
 use protocol::{CaseId, CycleId, Instant, RobotId, TeamId};
 use rules::Phase;
 
-use super::honest::Sayings;
+use super::honest::SentPackets;
 use super::plan::{FIRST_BOOT_EPOCH, Plan, TEAM};
 
 /// An attacker on one robot's radio.
@@ -37,7 +37,7 @@ impl Adversary {
 
     /// What the robot receives in a tick in which `packets` reach it; the adversary knows all packets the
     /// team ever sent.
-    pub fn tamper(&mut self, packets: Vec<Packet>, sayings: &Sayings) -> Vec<Packet> {
+    pub fn tamper(&mut self, packets: Vec<Packet>, sent_packets: &SentPackets) -> Vec<Packet> {
         let mut received = Vec::new();
         for mut packet in packets {
             if self.chance.chance(self.flips) && !packet.is_empty() {
@@ -48,9 +48,9 @@ impl Adversary {
             }
             received.push(packet);
         }
-        while self.chance.chance(self.replays) && !sayings.in_order.is_empty() {
-            let i = self.chance.whole(0, sayings.in_order.len() as u32 - 1) as usize;
-            self.insert(&mut received, sayings.in_order[i].clone());
+        while self.chance.chance(self.replays) && !sent_packets.in_order.is_empty() {
+            let i = self.chance.whole(0, sent_packets.in_order.len() as u32 - 1) as usize;
+            self.insert(&mut received, sent_packets.in_order[i].clone());
         }
         while self.chance.chance(self.foreign) {
             let packet = self.foreign_packet();

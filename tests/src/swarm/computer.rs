@@ -14,14 +14,14 @@ use protocol::robot_io::SensorFrame;
 use protocol::{Instant, RobotId};
 
 use super::adversary::Adversary;
-use super::honest::Sayings;
-use super::plan::{Fault, Madness, Plan, Span};
+use super::honest::SentPackets;
+use super::plan::{Fault, Plan, SensorFault, Span};
 
 /// State shared by swarm and computers.
 #[derive(Debug, Default)]
 pub struct Shared {
     /// All packets the team has sent.
-    pub sayings: Sayings,
+    pub sent_packets: SentPackets,
     /// Packets delivered to robots in this tick, after the adversary, in order.
     pub handed: Vec<(RobotId, Packet)>,
     /// Sensor frames of this tick.
@@ -29,20 +29,20 @@ pub struct Shared {
 }
 
 /// Boots the computers of a run.
-pub struct Barracks<'a> {
+pub struct FaultyBackend<'a> {
     plan: Rc<Plan>,
     base: CaseBase<'a>,
     shared: Rc<RefCell<Shared>>,
 }
 
-impl<'a> Barracks<'a> {
+impl<'a> FaultyBackend<'a> {
     /// For the run of that plan, with this case base in every flash.
     pub fn new(plan: Rc<Plan>, base: CaseBase<'a>, shared: Rc<RefCell<Shared>>) -> Self {
         Self { plan, base, shared }
     }
 }
 
-impl<'a> Backend<'a> for Barracks<'a> {
+impl<'a> Backend<'a> for FaultyBackend<'a> {
     fn name(&self) -> &'static str {
         "swarm"
     }
@@ -50,7 +50,7 @@ impl<'a> Backend<'a> for Barracks<'a> {
     fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'a>, McuError> {
         let (plan, id) = (&self.plan, config.robot);
         let clock = Clock::drawn(plan, id, config.epoch);
-        let madness = plan.madness.iter().filter(|(robot, ..)| *robot == id);
+        let sensor_faults = plan.sensor_faults.iter().filter(|(robot, ..)| *robot == id);
         Ok(Box::new(Computer {
             station: Station::with_keys(
                 clock.at(Instant(0)),
@@ -63,7 +63,7 @@ impl<'a> Backend<'a> for Barracks<'a> {
             tick_ms: plan.squad.tick_ms(),
             trouble: plan.trouble,
             adversary: Adversary::new(plan, id),
-            madness: madness.map(|(_, span, how)| (*span, *how, None)).collect(),
+            sensor_faults: sensor_faults.map(|(_, span, how)| (*span, *how, None)).collect(),
             shared: self.shared.clone(),
             reply: Reply::default(),
         }))
@@ -105,7 +105,7 @@ struct Computer<'a> {
     trouble: Span,
     adversary: Adversary,
     /// With the sensor frame at its start.
-    madness: Vec<(Span, Madness, Option<SensorFrame>)>,
+    sensor_faults: Vec<(Span, SensorFault, Option<SensorFrame>)>,
     shared: Rc<RefCell<Shared>>,
     reply: Reply,
 }
@@ -120,18 +120,18 @@ impl Computer<'_> {
 
     fn sensors(&mut self, ms: u32, truth: &SensorFrame) -> SensorFrame {
         let mut sensors = truth.clone();
-        for (span, how, before) in &mut self.madness {
+        for (span, how, before) in &mut self.sensor_faults {
             if !span.has(ms) {
                 *before = None;
                 continue;
             }
             match *how {
-                Madness::Stuck => sensors = before.get_or_insert(sensors).clone(),
-                Madness::NotANumber(which) => spoil(&mut sensors, which),
-                Madness::Tipped => sensors.health.tipped = true,
-                Madness::Spins(fast) => sensors.odometry.angular = fast,
-                Madness::Battery(volts) => sensors.health.battery = Some(volts),
-                Madness::Contact(contact) => sensors.ball_contact = contact,
+                SensorFault::Stuck => sensors = before.get_or_insert(sensors).clone(),
+                SensorFault::NotANumber(which) => spoil(&mut sensors, which),
+                SensorFault::Tipped => sensors.health.tipped = true,
+                SensorFault::Spins(fast) => sensors.odometry.angular = fast,
+                SensorFault::Battery(volts) => sensors.health.battery = Some(volts),
+                SensorFault::Contact(contact) => sensors.ball_contact = contact,
             }
         }
         sensors
@@ -145,7 +145,7 @@ impl Mcu for Computer<'_> {
         let mut packets: Vec<Packet> =
             tick.air.iter().filter_map(|bytes| Packet::from_slice(bytes).ok()).collect();
         if self.trouble.has(ms) {
-            packets = self.adversary.tamper(packets, &self.shared.borrow().sayings);
+            packets = self.adversary.tamper(packets, &self.shared.borrow().sent_packets);
         }
         let sensors = self.sensors(ms, &tick.sensors);
         {
@@ -170,7 +170,7 @@ impl Mcu for Computer<'_> {
     fn collect(&mut self) -> Result<Reply, McuError> {
         let reply = std::mem::take(&mut self.reply);
         let mut shared = self.shared.borrow_mut();
-        reply.packets.iter().for_each(|packet| shared.sayings.add(packet));
+        reply.packets.iter().for_each(|packet| shared.sent_packets.add(packet));
         Ok(reply)
     }
 }

@@ -29,7 +29,7 @@ pub struct Guard {
     me: RobotId,
     /// The messages that it may accept.
     pub honest: Honest,
-    born: u32,
+    booted_ms: u32,
     kinematics: Omni,
     /// Times, ms: the last frame, the last command, since when frames have come without a long silence.
     frame: Option<u32>,
@@ -44,9 +44,9 @@ pub struct Guard {
     last: (f32, f32),
 }
 
-/// Why a robot must brake.
+/// Reason for which a robot must brake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RuleRole {
+pub enum BrakeReason {
     /// The host has been silent.
     Silence,
     /// Frames have not come for half a second since a long silence or a boot.
@@ -71,11 +71,11 @@ pub enum Danger {
     /// An order outside every robot's limits.
     Absurd(ActuatorFrame),
     /// It did not brake though it had to.
-    Unbraked(RuleRole, ActuatorFrame),
+    Unbraked(BrakeReason, ActuatorFrame),
     /// It accelerated while it had to brake: speed and turning before and now.
-    Faster(RuleRole, [f32; 4]),
+    Faster(BrakeReason, [f32; 4]),
     /// It had to brake for a second and still moves at this speed.
-    Endless(RuleRole, f32),
+    Endless(BrakeReason, f32),
     /// The host has missed a few frames: the silence, ms, and the speed.
     Hesitant(u32, f32),
     /// The speed in STOP.
@@ -104,11 +104,11 @@ impl fmt::Display for Danger {
 
 impl Guard {
     /// A robot that boots at that moment, ms.
-    pub fn new(me: RobotId, boot_epoch: u32, born: u32) -> Self {
+    pub fn new(me: RobotId, boot_epoch: u32, booted_ms: u32) -> Self {
         Self {
             me,
             honest: Honest::new(me, boot_epoch),
-            born,
+            booted_ms,
             kinematics: Omni::default(),
             frame: None,
             command: None,
@@ -172,12 +172,12 @@ impl Guard {
         if !sane {
             return Err(Danger::Absurd(*order));
         }
-        let rule_role = self.rule_role(ms, sensors);
+        let reason = self.brake_reason(ms, sensors);
         let twist = self.kinematics.twist(wheels);
         let (speed, turn) = (twist.linear.norm(), twist.angular.abs());
         let before = std::mem::replace(&mut self.last, (speed, turn));
-        if let Some(rule_role) = rule_role {
-            return self.judge_braking(ms, rule_role, before, order);
+        if let Some(reason) = reason {
+            return self.judge_braking(ms, reason, before, order);
         }
         self.braking_since = None;
         let silence = self.frame.map_or(0, |last| ms - last).saturating_sub(SLACK);
@@ -205,27 +205,27 @@ impl Guard {
     fn judge_braking(
         &mut self,
         ms: u32,
-        rule_role: RuleRole,
+        reason: BrakeReason,
         before: (f32, f32),
         order: &ActuatorFrame,
     ) -> Result<(), Danger> {
         let ActuatorFrame::Omni { dribbler, kick, .. } = *order else { return Ok(()) };
         if kick != OmniKick::Discharge || dribbler != 0.0 {
-            return Err(Danger::Unbraked(rule_role, *order));
+            return Err(Danger::Unbraked(reason, *order));
         }
         let (speed, turn) = self.last;
         if speed > before.0 + BLUR || turn > before.1 + BLUR {
-            return Err(Danger::Faster(rule_role, [before.0, before.1, speed, turn]));
+            return Err(Danger::Faster(reason, [before.0, before.1, speed, turn]));
         }
         let since = *self.braking_since.get_or_insert(ms);
         if ms - since >= STANDS_WITHIN && speed + turn > 0.0 {
-            return Err(Danger::Endless(rule_role, speed));
+            return Err(Danger::Endless(reason, speed));
         }
         Ok(())
     }
 
     /// The reason for which it must brake now, as far as visible from outside.
-    fn rule_role(&mut self, ms: u32, sensors: &SensorFrame) -> Option<RuleRole> {
+    fn brake_reason(&mut self, ms: u32, sensors: &SensorFrame) -> Option<BrakeReason> {
         let silent = |last: Option<u32>| last.is_none_or(|last| ms - last >= SILENCE + SLACK);
         if self.frame.is_none_or(|last| ms - last >= LONG_SILENCE + SLACK) {
             self.armed = false;
@@ -236,17 +236,17 @@ impl Guard {
         self.low_since = if low { Some(self.low_since.unwrap_or(ms)) } else { None };
         let odometry = sensors.odometry;
         let number = odometry.linear.is_finite() && odometry.angular.is_finite();
-        let duties = [
-            (silent(self.frame) && ms - self.born >= SILENCE, RuleRole::Silence),
-            (!self.armed, RuleRole::NotArmed),
-            (silent(self.command), RuleRole::NoCommand),
-            (matches!(self.phase, Some(Phase::Halt | Phase::Timeout(_))), RuleRole::Halt),
-            (!number, RuleRole::NotANumber),
-            (sensors.health.tipped, RuleRole::Tipped),
-            (odometry.angular.abs() > SPINNING, RuleRole::Spinning),
-            (self.low_since.is_some_and(|since| ms - since >= LOW_FOR + SLACK), RuleRole::Battery),
+        let reasons = [
+            (silent(self.frame) && ms - self.booted_ms >= SILENCE, BrakeReason::Silence),
+            (!self.armed, BrakeReason::NotArmed),
+            (silent(self.command), BrakeReason::NoCommand),
+            (matches!(self.phase, Some(Phase::Halt | Phase::Timeout(_))), BrakeReason::Halt),
+            (!number, BrakeReason::NotANumber),
+            (sensors.health.tipped, BrakeReason::Tipped),
+            (odometry.angular.abs() > SPINNING, BrakeReason::Spinning),
+            (self.low_since.is_some_and(|since| ms - since >= LOW_FOR + SLACK), BrakeReason::Battery),
         ];
-        duties.into_iter().find_map(|(holds, rule_role)| holds.then_some(rule_role))
+        reasons.into_iter().find_map(|(holds, reason)| holds.then_some(reason))
     }
 }
 
@@ -282,32 +282,11 @@ const BLUR: f32 = 0.01;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::led_robot::{blind_sensors, drive_on};
     use geometry::Twist;
-    use protocol::host::{Directive, HostCommand};
-    use protocol::robot_io::Health;
 
     fn frame() -> Believed {
-        let me = RobotId::new(1).unwrap();
-        Believed::Host(HostMessage::Command(HostCommand {
-            to: me,
-            defending: geometry::GoalEnd::Negative,
-            phase: Phase::Run,
-            rule_role: protocol::host::RuleRole::Player,
-            directive: Directive::Stand,
-        }))
-    }
-
-    fn sensors() -> SensorFrame {
-        SensorFrame {
-            pose: None,
-            ball: None,
-            opponents: heapless::Vec::new(),
-            ball_contact: false,
-            busy: false,
-            odometry: Twist::default(),
-            health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
-            camera: None,
-        }
+        Believed::Host(HostMessage::Command(drive_on(RobotId::new(1).unwrap())))
     }
 
     /// An order to drive straight on with that speed.
@@ -323,58 +302,58 @@ mod tests {
             guard.receive(ms, &frame());
             let speed = if ms < 500 { 0.0 } else { 1.0 };
             let kick = if ms < 500 { OmniKick::Discharge } else { OmniKick::None };
-            assert_eq!(guard.judge(ms, &sensors(), &order(speed, kick)), Ok(()), "{ms}");
+            assert_eq!(guard.judge(ms, &blind_sensors(), &order(speed, kick)), Ok(()), "{ms}");
         }
         guard
     }
 
     #[test]
-    fn a_robot_that_drives_on_without_its_host_is_reported() {
+    fn driving_on_without_the_host_is_a_danger() {
         let mut guard = driving();
         let mut found = None;
         for ms in (1_000..1_300).step_by(10) {
-            found = found.or(guard.judge(ms, &sensors(), &order(1.0, OmniKick::None)).err());
+            found = found.or(guard.judge(ms, &blind_sensors(), &order(1.0, OmniKick::None)).err());
         }
         assert!(matches!(found, Some(Danger::Hesitant(..))), "{found:?}");
         let mut guard = driving();
         let still = order(0.0, OmniKick::None);
         let judged: Vec<_> =
-            (1_000..1_200).step_by(10).map(|ms| guard.judge(ms, &sensors(), &still)).collect();
+            (1_000..1_200).step_by(10).map(|ms| guard.judge(ms, &blind_sensors(), &still)).collect();
         // The last frame came at 990 ms; at 1,100 the tick of slack is over too.
         assert!(judged[..10].iter().all(Result::is_ok));
-        assert_eq!(judged[10], Err(Danger::Unbraked(RuleRole::Silence, still)));
+        assert_eq!(judged[10], Err(Danger::Unbraked(BrakeReason::Silence, still)));
     }
 
     #[test]
-    fn a_robot_that_moves_at_once_after_a_long_silence_is_reported_and_one_that_does_after_a_gap_is_not() {
+    fn moving_at_once_is_a_danger_after_a_long_silence_not_after_a_gap() {
         let moves = order(0.5, OmniKick::None);
-        for (silence, judged) in [(210, Ok(())), (600, Err(Danger::Unbraked(RuleRole::NotArmed, moves)))] {
+        for (silence, judged) in [(210, Ok(())), (600, Err(Danger::Unbraked(BrakeReason::NotArmed, moves)))] {
             let mut guard = driving();
             let until = 990 + silence;
-            assert!(guard.judge(until - 10, &sensors(), &order(0.0, OmniKick::Discharge)).is_ok());
+            assert!(guard.judge(until - 10, &blind_sensors(), &order(0.0, OmniKick::Discharge)).is_ok());
             guard.receive(until, &frame());
-            assert_eq!(guard.judge(until, &sensors(), &moves), judged, "{silence} ms");
+            assert_eq!(guard.judge(until, &blind_sensors(), &moves), judged, "{silence} ms");
         }
     }
 
     #[test]
-    fn growing_faster_endless_braking_and_absurd_orders_are_reported() {
-        let mut mad = sensors();
+    fn speeding_up_endless_braking_and_absurd_orders_are_dangers() {
+        let mut mad = blind_sensors();
         mad.odometry.angular = f32::NAN;
         let mut guard = driving();
         guard.receive(1_000, &frame());
         let faster = guard.judge(1_000, &mad, &order(1.5, OmniKick::Discharge));
-        assert!(matches!(faster, Err(Danger::Faster(RuleRole::NotANumber, _))), "{faster:?}");
+        assert!(matches!(faster, Err(Danger::Faster(BrakeReason::NotANumber, _))), "{faster:?}");
         let mut guard = driving();
         let mut found = Ok(());
         for ms in (1_000..2_100).step_by(10) {
             guard.receive(ms, &frame());
             found = found.and(guard.judge(ms, &mad, &order(1.0, OmniKick::Discharge)));
         }
-        assert!(matches!(found, Err(Danger::Endless(RuleRole::NotANumber, _))), "{found:?}");
+        assert!(matches!(found, Err(Danger::Endless(BrakeReason::NotANumber, _))), "{found:?}");
         let absurd = order(f32::NAN, OmniKick::None);
-        assert!(matches!(driving().judge(1_000, &sensors(), &absurd), Err(Danger::Absurd(_))));
+        assert!(matches!(driving().judge(1_000, &blind_sensors(), &absurd), Err(Danger::Absurd(_))));
         let hard = order(0.0, OmniKick::Flat(7.0));
-        assert_eq!(driving().judge(1_000, &sensors(), &hard), Err(Danger::Absurd(hard)));
+        assert_eq!(driving().judge(1_000, &blind_sensors(), &hard), Err(Danger::Absurd(hard)));
     }
 }

@@ -16,7 +16,7 @@ use protocol::team::TeamMessage;
 
 /// Everything that the team ever sent.
 #[derive(Debug, Default)]
-pub struct Sayings {
+pub struct SentPackets {
     /// A frame to several robots as each of its receivers sees it: the bytes covered by its tag, and its own
     /// tag.
     all: BTreeSet<Vec<u8>>,
@@ -24,7 +24,7 @@ pub struct Sayings {
     pub in_order: Vec<Packet>,
 }
 
-impl Sayings {
+impl SentPackets {
     /// Adds a packet sent by a member of the team.
     pub fn add(&mut self, packet: &Packet) {
         let readers = RobotId::all().filter_map(|reader| seen_by(packet, reader));
@@ -78,8 +78,8 @@ impl Honest {
     }
 
     /// Takes a received packet; returns its message if it may be accepted.
-    pub fn receive(&mut self, packet: &Packet, sayings: &Sayings) -> Option<Believed> {
-        if !seen_by(packet, self.me).is_some_and(|seen| sayings.all.contains(&seen)) {
+    pub fn receive(&mut self, packet: &Packet, sent_packets: &SentPackets) -> Option<Believed> {
+        if !seen_by(packet, self.me).is_some_and(|seen| sent_packets.all.contains(&seen)) {
             return None;
         }
         // version, team, sender, epoch, counter, payload, tag; the host's number is 17 where an audience and

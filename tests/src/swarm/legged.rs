@@ -11,7 +11,7 @@ use protocol::RobotId;
 use protocol::robot_io::ActuatorFrame;
 
 use super::adversary::earlier_match;
-use super::computer::{Barracks, Shared};
+use super::computer::{FaultyBackend, Shared};
 use super::guard::Danger;
 use super::honest::Honest;
 use super::plan::Plan;
@@ -22,7 +22,7 @@ pub(super) fn run(plan: Plan) -> Result<Counters, Found> {
     let plan = Rc::new(plan);
     let shared = Rc::new(RefCell::new(Shared::default()));
     for packet in earlier_match(&plan) {
-        shared.borrow_mut().sayings.add(&packet);
+        shared.borrow_mut().sent_packets.add(&packet);
     }
     let mut simulation = simulation(&plan, &shared);
     let mut watch = TeamWatch::new(&plan);
@@ -51,7 +51,7 @@ pub(super) fn run(plan: Plan) -> Result<Counters, Found> {
         let handed = std::mem::take(&mut shared.handed);
         shared.sensed.clear();
         for (to, packet) in handed {
-            let believed = lives.get_mut(&to).and_then(|boot| boot.receive(&packet, &shared.sayings));
+            let believed = lives.get_mut(&to).and_then(|boot| boot.receive(&packet, &shared.sent_packets));
             watch.received(ms, to, believed.as_ref());
         }
         for sent in &tick.sent {
@@ -91,7 +91,7 @@ fn simulation(plan: &Rc<Plan>, shared: &Rc<RefCell<Shared>>) -> Simulation<'stat
         parameters: parameters.clone(),
         faults,
     };
-    let backend = Box::new(Barracks::new(plan.clone(), case_library::four_legged(), shared.clone()));
+    let backend = Box::new(FaultyBackend::new(plan.clone(), case_library::four_legged(), shared.clone()));
     Simulation::new(config, backend).expect("the simulation starts")
 }
 

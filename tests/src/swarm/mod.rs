@@ -24,7 +24,7 @@ use std::fmt;
 use plan::{Plan, Squad};
 use protocol::RobotId;
 
-pub use runs::{Runs, description, watch, watch_matches};
+pub use runs::{Runs, report, watch, watch_matches};
 
 /// Results of a run without violations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -107,7 +107,7 @@ impl Span {
 
 /// Fault of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Madness {
+pub enum SensorFault {
     /// The frame at its start is repeated.
     Stuck,
     /// The numbers whose bits are set are NaN: odometry, battery, pose, ball.
@@ -146,7 +146,7 @@ pub struct Plan {
     /// Robots whose computers crash, from the crash to the reboot.
     pub reboots: Vec<(RobotId, Span)>,
     /// Robots whose sensors are faulty, when and how.
-    pub madness: Vec<(RobotId, Span, Madness)>,
+    pub sensor_faults: Vec<(RobotId, Span, SensorFault)>,
     /// When a second host sends, and whether its epoch is the later one.
     pub second_host: Option<(Span, bool)>,
     /// Probability that a robot receives a replayed packet in a tick.
@@ -193,11 +193,11 @@ impl Plan {
                 reboots.push((robot, span));
             }
         }
-        let mut madness = Vec::new();
+        let mut sensor_faults = Vec::new();
         for fault in [Fault::Stuck, Fault::NotANumber, Fault::Body] {
             for _ in 0..if has(fault) { chance.whole(1, 3) } else { 0 } {
                 let (robot, span) = (some(&mut chance), within(&mut chance, 2_500));
-                madness.push((robot, span, mad(fault, &mut chance)));
+                sensor_faults.push((robot, span, sensor_fault(fault, &mut chance)));
             }
         }
         let second_host = has(Fault::SecondHost).then(|| (within(&mut chance, 4_000), chance.chance(0.5)));
@@ -217,7 +217,7 @@ impl Plan {
             air,
             partition,
             reboots,
-            madness,
+            sensor_faults,
             second_host,
             replays,
             foreign,
@@ -240,7 +240,7 @@ impl Plan {
             air,
             partition: None,
             reboots: Vec::new(),
-            madness: Vec::new(),
+            sensor_faults: Vec::new(),
             second_host: None,
             replays: 0.0,
             foreign: 0.0,
@@ -327,14 +327,14 @@ fn air(on: &[Fault], squad: Squad, chance: &mut Stream) -> AirSettings {
     air
 }
 
-fn mad(fault: Fault, chance: &mut Stream) -> Madness {
+fn sensor_fault(fault: Fault, chance: &mut Stream) -> SensorFault {
     match (fault, chance.whole(0, 3)) {
-        (Fault::Stuck, 0) => Madness::Contact(chance.chance(0.5)),
-        (Fault::Stuck, _) => Madness::Stuck,
-        (Fault::NotANumber, _) => Madness::NotANumber(chance.whole(1, 15) as u8),
-        (_, 0 | 1) => Madness::Tipped,
-        (_, 2) => Madness::Spins(if chance.chance(0.5) { 45.0 } else { -45.0 }),
-        (_, _) => Madness::Battery(chance.between(5.0, 13.9)),
+        (Fault::Stuck, 0) => SensorFault::Contact(chance.chance(0.5)),
+        (Fault::Stuck, _) => SensorFault::Stuck,
+        (Fault::NotANumber, _) => SensorFault::NotANumber(chance.whole(1, 15) as u8),
+        (_, 0 | 1) => SensorFault::Tipped,
+        (_, 2) => SensorFault::Spins(if chance.chance(0.5) { 45.0 } else { -45.0 }),
+        (_, _) => SensorFault::Battery(chance.between(5.0, 13.9)),
     }
 }
 
@@ -363,18 +363,16 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_wrong_before_the_trouble_and_after_it() {
+    fn faults_are_on_only_in_the_trouble_span() {
         for seed in 0..400 {
             let plan = Plan::drawn(seed);
             let outside = |span: &Span| span.from < plan.trouble.from || span.to > plan.trouble.to;
             assert!(!plan.reboots.iter().any(|(_, span)| outside(span)), "seed {seed}");
-            assert!(!plan.madness.iter().any(|(_, span, _)| outside(span)), "seed {seed}");
+            assert!(!plan.sensor_faults.iter().any(|(_, span, _)| outside(span)), "seed {seed}");
             assert!(!plan.second_host.iter().any(|(span, _)| outside(span)), "seed {seed}");
-            let stop_rules = AirSettings::default();
-            assert_eq!(
-                (plan.air_at(plan.trouble.from - 1), plan.air_at(plan.trouble.to)),
-                (stop_rules.clone(), stop_rules)
-            );
+            for ms in [plan.trouble.from - 1, plan.trouble.to] {
+                assert_eq!(plan.air_at(ms), AirSettings::default(), "seed {seed}");
+            }
         }
     }
 }

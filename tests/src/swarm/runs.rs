@@ -70,7 +70,7 @@ fn each<T: Send>(runs: Runs, play: impl Fn(u64) -> T + Sync, look: impl Fn(u64, 
 }
 
 /// The lines that report a violation; the last one repeats it.
-pub fn description(seed: u64, found: &Found) -> String {
+pub fn report(seed: u64, found: &Found) -> String {
     let plan = plan::Plan::drawn(seed);
     format!("seed {seed}: {found}\n  {plan}\n  repeat: cargo xtask swarm --first {seed} --seeds 1")
 }

@@ -22,7 +22,7 @@ pub(super) struct Script {
 
 impl Script {
     /// A running game of free robots.
-    pub(super) fn stop_rules() -> Self {
+    pub(super) fn free_play() -> Self {
         Self::default()
     }
 

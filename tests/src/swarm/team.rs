@@ -147,8 +147,8 @@ impl TeamWatch {
             self.united = Some(ms);
             self.counters.slowest_ms = ms - self.healed;
         } else if self.united.is_none() && ms > self.owed_since + RECOVER_WITHIN {
-            let description: Vec<String> = self.ids.iter().zip(&self.beacons).map(description).collect();
-            self.find(ms, Broken::Dead(description.join("; ")));
+            let states: Vec<String> = self.ids.iter().zip(&self.beacons).map(beacon_text).collect();
+            self.find(ms, Broken::Dead(states.join("; ")));
         }
         self.found.clone().map_or(Ok(()), Err)
     }
@@ -181,7 +181,7 @@ impl TeamWatch {
     }
 }
 
-fn description((id, beacon): (&RobotId, &Option<Beacon>)) -> String {
+fn beacon_text((id, beacon): (&RobotId, &Option<Beacon>)) -> String {
     match beacon {
         None => format!("{id} silent"),
         Some(beacon) => {

@@ -15,7 +15,7 @@ use protocol::{Duration, Instant, RobotId, Who};
 use rules::{Colour, League};
 
 use super::adversary::earlier_match;
-use super::computer::{Barracks, Shared};
+use super::computer::{FaultyBackend, Shared};
 use super::guard::Guard;
 use super::plan::{FIRST_BOOT_EPOCH, Plan, TEAM};
 use super::script::{Headquarters, Script};
@@ -36,7 +36,7 @@ struct Player<'a> {
 struct Run<'a> {
     plan: Rc<Plan>,
     shared: Rc<RefCell<Shared>>,
-    barracks: Barracks<'a>,
+    backend: FaultyBackend<'a>,
     world: World,
     air: Air,
     players: Vec<Player<'a>>,
@@ -57,12 +57,12 @@ impl Run<'_> {
     fn new(plan: Rc<Plan>) -> Self {
         let shared = Rc::new(RefCell::new(Shared::default()));
         for packet in earlier_match(&plan) {
-            shared.borrow_mut().sayings.add(&packet);
+            shared.borrow_mut().sent_packets.add(&packet);
         }
         let parameters = Parameters::of(League::DivisionB).expect("a Small Size league");
         let mut world = World::new(League::DivisionB, parameters, plan.seed);
         let mut chance = Stream::new(plan.seed, "swarm places");
-        let mut barracks = Barracks::new(plan.clone(), case_library::division_b(), shared.clone());
+        let mut backend = FaultyBackend::new(plan.clone(), case_library::division_b(), shared.clone());
         let mut place = |x: f32| {
             let at = Point::new(x + chance.between(-0.3, 0.3), chance.between(-2.0, 2.0));
             Pose { position: at, heading: Angle::new(chance.between(-3.0, 3.0)) }
@@ -70,7 +70,7 @@ impl Run<'_> {
         let mut players = Vec::new();
         for (i, config) in plan.brains.iter().enumerate() {
             world.put(Who::blue(config.robot), place(i as f32 - 2.0));
-            let computer = barracks.boot(config).expect("native computers start");
+            let computer = backend.boot(config).expect("native computers start");
             let guard = Guard::new(config.robot, config.epoch, 0);
             players.push(Player {
                 config: config.clone(),
@@ -87,9 +87,9 @@ impl Run<'_> {
         let ids: Vec<RobotId> = plan.ids().collect();
         let air = Air::with_host(plan.air_at(0), plan.seed, &ids);
         let watch = TeamWatch::new(&plan);
-        let script = if plan.on.is_empty() { Script::stop_rules() } else { Script::drawn(&plan) };
+        let script = if plan.on.is_empty() { Script::free_play() } else { Script::drawn(&plan) };
         let hosts = vec![headquarters(&plan, FIRST_BOOT_EPOCH + 10, script)];
-        Self { plan, shared, barracks, world, air, players, hosts, watch }
+        Self { plan, shared, backend, world, air, players, hosts, watch }
     }
 
     fn tick(&mut self, number: u32) -> Result<(), Found> {
@@ -124,7 +124,7 @@ impl Run<'_> {
                 player.config.epoch += 1;
                 player.born = ms;
                 player.guard = Guard::new(*id, player.config.epoch, ms);
-                player.computer = Some(self.barracks.boot(&player.config).expect("native computers start"));
+                player.computer = Some(self.backend.boot(&player.config).expect("native computers start"));
                 self.watch.booted(ms, *id);
             }
         }
@@ -141,7 +141,7 @@ impl Run<'_> {
         if round_up(plan.trouble.to) == ms && plan.second_host.is_some_and(|(_, later)| later) {
             // The robots follow the second host; the remaining one restarts with a newer epoch to be
             // accepted.
-            self.hosts = vec![headquarters(&plan, FIRST_BOOT_EPOCH + 30, Script::stop_rules())];
+            self.hosts = vec![headquarters(&plan, FIRST_BOOT_EPOCH + 30, Script::free_play())];
         }
     }
 
@@ -159,7 +159,7 @@ impl Run<'_> {
                 host.lead(now, ms, &self.plan, &ids, &self.world);
             }
             host.speak(|to, packet| {
-                shared.sayings.add(packet);
+                shared.sent_packets.add(packet);
                 air.send_from_host(number, to, packet);
             });
         }
@@ -183,7 +183,7 @@ impl Run<'_> {
             let mut shared = shared.borrow_mut();
             let handed = std::mem::take(&mut shared.handed);
             for (_, packet) in handed {
-                let believed = player.guard.honest.receive(&packet, &shared.sayings);
+                let believed = player.guard.honest.receive(&packet, &shared.sent_packets);
                 if let Some(believed) = &believed {
                     player.guard.receive(ms, believed);
                 }

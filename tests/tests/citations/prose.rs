@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn code_is_found_over_the_ends_of_lines_and_within_fences() {
+    fn code_spans_are_found_across_lines_and_in_fences() {
         let text = "//! Uses `a b\n//! c` and ``d ` e``.\nlet x = 1; // `f`\nlet y = '`';\n/// ```sh\n/// g\n/// ```\n";
         let quoted = Quoted::of(&Source { path: "x.rs".into(), text: text.into() });
         let spans = [(1, "a b c"), (2, "d ` e"), (3, "f")].map(|(line, span)| (line, span.to_owned()));

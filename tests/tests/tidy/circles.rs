@@ -158,20 +158,10 @@ fn a_circle_is_found_through_braces_and_a_hierarchy_is_none() {
 }
 
 /// Circles that are left, by crate: files in the order of their names. Only to be shortened.
-const KNOWN: [(&str, &[&str]); 12] = [
+const KNOWN: [(&str, &[&str]); 9] = [
     ("casebase", &["case", "index", "path", "plan_simulation", "stored", "table"]),
     ("brain", &["belief", "body", "skills"]),
     ("brain", &["estimate", "execution"]),
-    ("hil-sim", &["small_size::parameters", "small_size::wheels"]),
-    (
-        "hil-sim",
-        &[
-            "small_size::referee::account",
-            "small_size::referee::event",
-            "small_size::referee::ready",
-            "small_size::referee::scene",
-        ],
-    ),
     ("host", &["strategy::defence", "strategy::support"]),
     ("study", &["evaluation::comparison", "evaluation::tables"]),
     (
@@ -187,6 +177,5 @@ const KNOWN: [(&str, &[&str]); 12] = [
     ),
     ("onetwo", &["evaluate::merge", "evaluate::report", "evaluate::work"]),
     ("onetwo", &["live::overlay_builder", "live::tactics"]),
-    ("page", &["page", "routes", "server"]),
     ("match-tests", &["oracle::library", "oracle::walk"]),
 ];

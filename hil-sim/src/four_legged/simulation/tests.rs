@@ -176,7 +176,7 @@ fn equal_configurations_run_equally_and_other_seeds_otherwise() {
 }
 
 #[test]
-fn one_flipped_bit_of_one_order_makes_another_trial() {
+fn one_flipped_bit_of_one_order_changes_the_trace_hash() {
     let flip = |bit| {
         let fault = Fault::FlipOrderBit { robot: RobotId::new(2).unwrap(), bit };
         SimulationConfig { faults: vec![ScheduledFault { tick: 30, fault }], ..simple(1) }
@@ -188,7 +188,7 @@ fn one_flipped_bit_of_one_order_makes_another_trial() {
 }
 
 #[test]
-fn a_packet_is_received_one_tick_after_it_was_said() {
+fn a_packet_is_received_one_tick_after_it_was_sent() {
     let (_, given) = run(simple(1), 3);
     let received: Vec<_> = given.iter().map(|g| (g.seq, g.robot, g.air.clone())).collect();
     assert_eq!(received[..2], [(0, 1, vec![]), (0, 2, vec![])]);
@@ -197,7 +197,7 @@ fn a_packet_is_received_one_tick_after_it_was_said() {
 }
 
 #[test]
-fn a_crashed_robot_is_given_nothing_and_returns_with_a_new_life_and_a_new_clock() {
+fn a_crashed_robot_gets_no_tick_and_reboots_with_a_new_epoch_and_clock() {
     let robot = RobotId::new(2).unwrap();
     let at = |tick, fault| ScheduledFault { tick, fault };
     let faults =
@@ -275,7 +275,7 @@ fn leaves(value: &mut toml::Value, path: &str, visit: &mut dyn FnMut(&str, &mut 
 }
 
 #[test]
-fn every_number_of_the_file_is_used() {
+fn every_parameter_of_the_file_changes_the_trial() {
     let file: toml::Value = toml::from_str(FOUR_LEGGED_TOML).unwrap();
     let mut paths = Vec::new();
     leaves(&mut file.clone(), "", &mut |path, _| paths.push(path.to_owned()));

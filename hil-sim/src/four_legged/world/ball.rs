@@ -34,7 +34,7 @@ impl LeggedBall {
         self.velocity = if time < dt { Vector::default() } else { direction * (speed - deceleration * dt) };
     }
 
-    /// Its stop position if nothing touches it.
+    /// Stop position of the ball if nothing touches it.
     pub fn rest(&self, deceleration: f32) -> Point<Field> {
         self.position + self.velocity * (self.velocity.norm() / (2.0 * deceleration))
     }

@@ -73,7 +73,7 @@ impl LeggedWorld {
         self.events.push(WorldEvent::Touched { robot });
     }
 
-    /// Whether the ball lies where the robot's front legs could close upon it, and is slow enough.
+    /// True where the ball lies where the robot's front legs could close upon it, and is slow enough.
     pub(crate) fn in_grasp(&self, robot: usize) -> bool {
         self.in_grasp_at(robot, self.ball.position)
     }

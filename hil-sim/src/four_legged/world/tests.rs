@@ -47,7 +47,7 @@ fn opponent(x: f32, y: f32, heading: f32) -> Walker {
 }
 
 #[test]
-fn three_grabs_in_four_succeed_and_take_half_a_second() {
+fn grabs_have_the_configured_success_and_duration() {
     let mut kept = 0_u32;
     for seed in 0..2_000 {
         let mut world = world(seed, &[]);
@@ -78,7 +78,7 @@ fn a_ball_behind_the_robot_or_too_fast_is_not_grabbed() {
 }
 
 #[test]
-fn a_held_ball_walks_with_the_robot_at_half_speed() {
+fn a_robot_carries_the_ball_at_half_speed() {
     let mut world = holding(&[]);
     walk(&mut world, Twist { linear: Vector::new(1.0, 0.0), angular: 0.0 }, LeggedPrimitive::None);
     run(&mut world, 4.0);
@@ -89,7 +89,7 @@ fn a_held_ball_walks_with_the_robot_at_half_speed() {
 }
 
 #[test]
-fn kicks_roll_as_far_and_as_wide_as_the_file_says() {
+fn kicks_have_the_configured_distance_and_scatter() {
     let start = holding(&[]);
     let mut rests = Vec::new();
     for seed in 0..400 {
@@ -119,7 +119,7 @@ fn math_sd(values: impl Iterator<Item = f32>) -> f32 {
 }
 
 #[test]
-fn side_kicks_go_to_their_sides_and_a_pass_as_far_as_asked() {
+fn side_kicks_go_sideways_and_a_pass_goes_the_ordered_distance() {
     let kicked = |kick| {
         let mut world = holding(&[]);
         order(&mut world, LeggedPrimitive::Kick(kick));
@@ -148,7 +148,7 @@ fn a_kick_without_the_ball_moves_nothing() {
 }
 
 #[test]
-fn an_opponent_at_the_held_ball_touches_it_and_takes_it_with_even_odds_of_a_grab() {
+fn a_grab_at_a_held_ball_touches_it_and_succeeds_half_as_often() {
     let mut world = holding(&[opponent(290.0, 0.0, 180.0)]);
     assert!(run(&mut world, 0.01).contains(&WorldEvent::Touched { robot: 1 }));
     let mut taken = 0_u32;
@@ -167,7 +167,7 @@ fn an_opponent_at_the_held_ball_touches_it_and_takes_it_with_even_odds_of_a_grab
 }
 
 #[test]
-fn a_crashed_robot_lets_the_ball_go() {
+fn a_crashed_robot_releases_the_ball() {
     let mut world = holding(&[]);
     walk(&mut world, Twist { linear: Vector::new(1.0, 0.0), angular: 0.0 }, LeggedPrimitive::Grab);
     world.let_go(0);
@@ -197,7 +197,7 @@ fn a_ball_bounces_off_a_side_and_stops_between_the_legs() {
 }
 
 #[test]
-fn robots_never_stay_in_each_other() {
+fn robots_do_not_stay_overlapped() {
     let crowd = [opponent(100.0, 20.0, 90.0), opponent(-80.0, 0.0, 0.0), opponent(0.0, 0.0, 45.0)];
     let mut world = world(0, &crowd);
     for walker in &mut world.walkers {

@@ -21,9 +21,9 @@ pub enum Side {
 pub struct Walker {
     /// Team of the robot.
     pub side: Side,
-    /// Its position and heading.
+    /// Position and heading.
     pub pose: Pose<Field>,
-    /// Its velocity, in its own frame.
+    /// Velocity in the body frame.
     pub twist: Twist<Body>,
     /// Ordered velocity, body frame, m/s and rad/s.
     pub wanted: Twist<Body>,
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn the_surface_edge_stops_everyone() {
+    fn the_edge_of_the_field_surface_stops_robots() {
         let field = League::FourLegged.field();
         let mut walker = Walker::at(Side::Attackers, Pose::from_mm_deg(5000.0, -5000.0, 0.0));
         walker.stay_on_surface(&field, 0.12);

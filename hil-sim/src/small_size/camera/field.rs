@@ -15,7 +15,7 @@ use crate::small_size::compatibility::{Compatibility, ReportedBall};
 /// The geometry packet of `world`'s field with these cameras.
 pub(super) fn geometry(world: &World, compatibility: &Compatibility, views: &[View]) -> GeometryData {
     let field = &world.pitch().field;
-    let announced = compatibility.reported_ball.unwrap_or_else(|| ReportedBall::of(&world.parameters().ball));
+    let ball = compatibility.reported_ball.unwrap_or_else(|| ReportedBall::of(&world.parameters().ball));
     let mm = |m: f32| geometry::math::round_to_i32(m * 1000.0);
     let full = |value: i32| compatibility.full_geometry.then_some(value);
     let newer =
@@ -52,14 +52,14 @@ pub(super) fn geometry(world: &World, compatibility: &Compatibility, views: &[Vi
         calib: views.iter().map(|view| view.calibration(compatibility.full_geometry)).collect(),
         models: Some(GeometryModels {
             straight_two_phase: Some(BallModelStraightTwoPhase {
-                acc_slide: announced.slide,
-                acc_roll: announced.roll,
-                k_switch: announced.switch,
+                acc_slide: ball.slide,
+                acc_roll: ball.roll,
+                k_switch: ball.switch,
             }),
             chip_fixed_loss: Some(BallModelChipFixedLoss {
-                damping_xy_first_hop: announced.hops[0],
-                damping_xy_other_hops: announced.hops[1],
-                damping_z: announced.hops[2],
+                damping_xy_first_hop: ball.hops[0],
+                damping_xy_other_hops: ball.hops[1],
+                damping_z: ball.hops[2],
             }),
         }),
     }
@@ -73,61 +73,41 @@ fn lines(world: &World, compatibility: &Compatibility) -> Vec<FieldLineSegment> 
     let (x, y) = (field.length * 500.0 - inset, field.width * 500.0 - inset);
     let depth = field.length * 500.0 - field.penalty_depth * 1000.0;
     let half = field.penalty_width * 500.0;
-    let line = |name: &str, shape: Option<Shape>, p1: [f32; 2], p2: [f32; 2]| FieldLineSegment {
-        name: name.into(),
-        p1: Vector2f { x: p1[0], y: p1[1] },
-        p2: Vector2f { x: p2[0], y: p2[1] },
-        thickness,
-        r#type: if compatibility.full_geometry { shape.map(|shape| shape as i32) } else { None },
-    };
     let mut lines = vec![
-        line("TopTouchLine", Some(Shape::TopTouchLine), [-x, y], [x, y]),
-        line("BottomTouchLine", Some(Shape::BottomTouchLine), [-x, -y], [x, -y]),
-        line("LeftGoalLine", Some(Shape::LeftGoalLine), [-x, -y], [-x, y]),
-        line("RightGoalLine", Some(Shape::RightGoalLine), [x, -y], [x, y]),
-        line("HalfwayLine", Some(Shape::HalfwayLine), [0.0, -y], [0.0, y]),
-        line("CenterLine", Some(Shape::CenterLine), [-x, 0.0], [x, 0.0]),
-        line("LeftPenaltyStretch", Some(Shape::LeftPenaltyStretch), [-depth, -half], [-depth, half]),
-        line("RightPenaltyStretch", Some(Shape::RightPenaltyStretch), [depth, -half], [depth, half]),
+        ("TopTouchLine", Some(Shape::TopTouchLine), [-x, y], [x, y]),
+        ("BottomTouchLine", Some(Shape::BottomTouchLine), [-x, -y], [x, -y]),
+        ("LeftGoalLine", Some(Shape::LeftGoalLine), [-x, -y], [-x, y]),
+        ("RightGoalLine", Some(Shape::RightGoalLine), [x, -y], [x, y]),
+        ("HalfwayLine", Some(Shape::HalfwayLine), [0.0, -y], [0.0, y]),
+        ("CenterLine", Some(Shape::CenterLine), [-x, 0.0], [x, 0.0]),
+        ("LeftPenaltyStretch", Some(Shape::LeftPenaltyStretch), [-depth, -half], [-depth, half]),
+        ("RightPenaltyStretch", Some(Shape::RightPenaltyStretch), [depth, -half], [depth, half]),
     ];
     if compatibility.drawn_goals {
         let (goal, back) = (field.goal_width * 500.0, x + field.goal_depth * 1000.0);
-        for (side, sign) in [("Right", 1.0), ("Left", -1.0)] {
-            let goal_line = |name: &str, p1: [f32; 2], p2: [f32; 2]| {
-                line(&format!("{side}Goal{name}Line"), None, [sign * p1[0], p1[1]], [sign * p2[0], p2[1]])
-            };
-            lines.push(goal_line("Top", [x, goal], [back, goal]));
-            lines.push(goal_line("Bottom", [x, -goal], [back, -goal]));
-            lines.push(goal_line("Depth", [back, -goal], [back, goal]));
-        }
+        lines.extend([
+            ("RightGoalTopLine", None, [x, goal], [back, goal]),
+            ("RightGoalBottomLine", None, [x, -goal], [back, -goal]),
+            ("RightGoalDepthLine", None, [back, -goal], [back, goal]),
+            ("LeftGoalTopLine", None, [-x, goal], [-back, goal]),
+            ("LeftGoalBottomLine", None, [-x, -goal], [-back, -goal]),
+            ("LeftGoalDepthLine", None, [-back, -goal], [-back, goal]),
+        ]);
     }
     // SSL-Vision's names; grSim swaps the names of all four lines.
     let first = if compatibility.drawn_goals { -half } else { half };
-    lines.extend([
-        line(
-            "LeftFieldLeftPenaltyStretch",
-            Some(Shape::LeftFieldLeftPenaltyStretch),
-            [-x, -first],
-            [-depth, -first],
-        ),
-        line(
-            "LeftFieldRightPenaltyStretch",
-            Some(Shape::LeftFieldRightPenaltyStretch),
-            [-x, first],
-            [-depth, first],
-        ),
-        line(
-            "RightFieldRightPenaltyStretch",
-            Some(Shape::RightFieldRightPenaltyStretch),
-            [x, -first],
-            [depth, -first],
-        ),
-        line(
-            "RightFieldLeftPenaltyStretch",
-            Some(Shape::RightFieldLeftPenaltyStretch),
-            [x, first],
-            [depth, first],
-        ),
-    ]);
-    lines
+    let (left, right) = (Shape::LeftFieldLeftPenaltyStretch, Shape::LeftFieldRightPenaltyStretch);
+    lines.push(("LeftFieldLeftPenaltyStretch", Some(left), [-x, -first], [-depth, -first]));
+    lines.push(("LeftFieldRightPenaltyStretch", Some(right), [-x, first], [-depth, first]));
+    let (left, right) = (Shape::RightFieldLeftPenaltyStretch, Shape::RightFieldRightPenaltyStretch);
+    lines.push(("RightFieldRightPenaltyStretch", Some(right), [x, -first], [depth, -first]));
+    lines.push(("RightFieldLeftPenaltyStretch", Some(left), [x, first], [depth, first]));
+    let segments = lines.into_iter().map(|(name, shape, [x1, y1], [x2, y2])| FieldLineSegment {
+        name: name.into(),
+        p1: Vector2f { x: x1, y: y1 },
+        p2: Vector2f { x: x2, y: y2 },
+        thickness,
+        r#type: shape.filter(|_| compatibility.full_geometry).map(|shape| shape as i32),
+    });
+    segments.collect()
 }

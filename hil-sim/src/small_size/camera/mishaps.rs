@@ -86,7 +86,7 @@ impl Mishaps {
         Some([*here.get(one as usize)?, *here.get(other as usize)?])
     }
 
-    /// Whether a frame taken now does not arrive.
+    /// True where a frame taken now does not arrive.
     pub(super) fn in_gap(&self, now: u64) -> bool {
         (self.gap[0]..self.gap[1]).contains(&now)
     }

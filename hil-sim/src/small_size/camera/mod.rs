@@ -132,7 +132,7 @@ impl Cameras {
     }
 
     /// All frames of the present world, at once and without delay: for a caller that steps the simulation.
-    pub fn snapshot(&mut self, world: &World) -> Vec<DetectionFrame> {
+    pub fn capture(&mut self, world: &World) -> Vec<DetectionFrame> {
         let time = self.time(world.now());
         let settings = self.settings;
         self.views.iter_mut().map(|view| view.look(world, &settings, time)).collect()

@@ -39,11 +39,11 @@ fn watched(cameras: &mut Cameras, world: &mut World, steps: u32) -> Vec<(u64, Wr
 }
 
 #[test]
-fn without_noise_everything_is_reported_where_it_is_in_millimetres() {
+fn without_noise_detections_are_the_true_positions_in_millimetres() {
     let mut world = world(League::DivisionB);
     let mut cameras = Cameras::new(clear(&world), &world, 1);
     world.step();
-    let frames = cameras.snapshot(&world);
+    let frames = cameras.capture(&world);
     assert_eq!(frames.len(), 2);
     let ball = frames[0].balls[0];
     assert_eq!((ball.x, ball.y), (1000.0, 1000.0));
@@ -61,7 +61,7 @@ fn without_noise_everything_is_reported_where_it_is_in_millimetres() {
 }
 
 #[test]
-fn snapshots_come_at_the_rate_numbered_by_camera_and_are_sent_after_the_delay() {
+fn frames_have_the_rate_delay_and_numbers_of_their_camera() {
     let mut world = world(League::DivisionB);
     let mut cameras = Cameras::new(clear(&world), &world, 1);
     let packets = watched(&mut cameras, &mut world, 2_000);
@@ -91,14 +91,14 @@ fn snapshots_come_at_the_rate_numbered_by_camera_and_are_sent_after_the_delay() 
 }
 
 #[test]
-fn noise_has_the_deviation_it_says_and_misses_as_often() {
+fn noise_has_the_configured_deviation_and_share_of_misses() {
     let mut world = world(League::DivisionB);
     let noise = world.parameters().noise;
     let mut cameras = Cameras::new(CameraSettings { noise, ..clear(&world) }, &world, 1);
     world.step();
     let (n, mut squares, mut balls, mut robots) = (4_000, 0.0, 0, 0);
     for _ in 0..n {
-        let frames = cameras.snapshot(&world);
+        let frames = cameras.capture(&world);
         if let Some(ball) = frames[0].balls.first() {
             balls += 1;
             squares += (ball.x - 1000.0) * (ball.x - 1000.0);
@@ -124,7 +124,7 @@ fn a_ball_behind_a_robot_is_hidden_and_one_before_its_front_is_seen() {
     world.put(who, Pose::from_mm_deg(4200.0, 0.0, 0.0));
     let mut seen = |x: f32, height: f32| {
         world.put_ball(Ball { height, ..Ball::at(Point::new(x, 0.0)) });
-        cameras.snapshot(&world).iter().any(|frame| !frame.balls.is_empty())
+        cameras.capture(&world).iter().any(|frame| !frame.balls.is_empty())
     };
     assert!(seen(3.9, 0.0));
     assert!(!seen(4.2946, 0.0), "before its front, in its shadow");
@@ -133,17 +133,17 @@ fn a_ball_behind_a_robot_is_hidden_and_one_before_its_front_is_seen() {
     world.put(who, Pose::from_mm_deg(4200.0, 0.0, 180.0));
     let mut seen = |x: f32| {
         world.put_ball(Ball::at(Point::new(x, 0.0)));
-        cameras.snapshot(&world).iter().any(|frame| !frame.balls.is_empty())
+        cameras.capture(&world).iter().any(|frame| !frame.balls.is_empty())
     };
     assert!(seen(4.2 - 0.0946), "in its dribbler, on the camera's side");
 }
 
 #[test]
-fn a_flying_ball_is_reported_where_its_ray_meets_the_ground() {
+fn a_flying_ball_is_detected_where_the_cameras_ray_meets_the_ground() {
     let mut world = world(League::DivisionB);
     let mut cameras = Cameras::new(clear(&world), &world, 1);
     world.put_ball(Ball { height: 1.0, ..Ball::at(Point::new(3.4, 0.5)) });
-    let ball = cameras.snapshot(&world)[0].balls[0];
+    let ball = cameras.capture(&world)[0].balls[0];
     // From (2.4, 0) at 5 m: 5/4 of the distance outwards.
     assert!((ball.x - 3650.0).abs() < 0.1 && (ball.y - 625.0).abs() < 0.1, "{ball:?}");
 }
@@ -155,7 +155,7 @@ fn pixels_and_calibration_lead_back_to_the_field() {
     world.step();
     let geometry = cameras.geometry(&world, None);
     assert_eq!(geometry.calib.len(), 4);
-    for frame in cameras.snapshot(&world) {
+    for frame in cameras.capture(&world) {
         let c = geometry.calib[frame.camera_id as usize];
         assert_eq!(c.camera_id, frame.camera_id);
         for ball in frame.balls {
@@ -171,7 +171,7 @@ fn pixels_and_calibration_lead_back_to_the_field() {
 }
 
 #[test]
-fn geometry_reports_the_field_of_the_rules_and_our_ball() {
+fn geometry_packets_have_the_rules_field_and_our_ball_model() {
     let world = world(League::DivisionA);
     let geometry = Cameras::new(clear(&world), &world, 1).geometry(&world, None);
     let field = &geometry.field;
@@ -189,7 +189,7 @@ fn geometry_reports_the_field_of_the_rules_and_our_ball() {
 }
 
 #[test]
-fn trap_01_both_clocks_can_be_had() {
+fn trap_01_time_stamps_use_the_clock_of_the_profile() {
     let first = |profile| {
         let mut world = world(League::DivisionB);
         let mut cameras = Cameras::of(profile, 1_795_220_511.0, &world, 1);

@@ -16,14 +16,14 @@ use crate::small_size::robot::Robot;
 use crate::small_size::{Ball, World};
 use rules::Colour;
 
-/// One camera.
+/// Camera that looks straight down on its rectangle of the field.
 #[derive(Clone, Debug)]
 pub(super) struct View {
     id: u32,
-    /// Its position, m.
+    /// Position above the field, m.
     at: Point<Field>,
     height: f32,
-    /// The rectangle it sees: corners with minimum and maximum x and y, m.
+    /// Corners of the visible rectangle: with minimum and maximum x and y, m.
     low: Point<Field>,
     high: Point<Field>,
     /// Pixels a metre at one metre's distance.
@@ -66,13 +66,14 @@ impl View {
             let (left, bottom) = (column as f32 * across - x, row as f32 * along - y);
             // Half the overlap beyond each inner edge; beyond the outer ones there is only a ball that flew
             // away.
-            let beyond = |inner: bool| if inner { camera.overlap * 0.5 } else { OUTSIDE };
+            let beyond = |inner: bool| if inner { camera.overlap * 0.5 } else { OUTSIDE_VIEW };
             let low = Point::new(left - beyond(column > 0), bottom - beyond(row > 0));
             let high = Point::new(
                 left + across + beyond(column + 1 < columns),
                 bottom + along + beyond(row + 1 < rows),
             );
-            let reach = (across * 0.5 / IMAGE[0] as f32).max(along * 0.5 / IMAGE[1] as f32) * 1.2;
+            let reach =
+                (across * 0.5 / IMAGE_PIXELS[0] as f32).max(along * 0.5 / IMAGE_PIXELS[1] as f32) * 1.2;
             let phase = if settings.compatibility.staggered {
                 period * id as u64 / u64::from(camera.count)
             } else {
@@ -125,10 +126,10 @@ impl View {
             if !robot.present || !self.sees(p) || self.chance.chance(settings.noise.missing_robot) {
                 continue;
             }
-            let announced = self.robot(robot, settings);
+            let detection = self.robot(robot, settings);
             match robot.who.colour {
-                Colour::Yellow => frame.robots_yellow.push(announced),
-                Colour::Blue => frame.robots_blue.push(announced),
+                Colour::Yellow => frame.robots_yellow.push(detection),
+                Colour::Blue => frame.robots_blue.push(detection),
             }
         }
         frame
@@ -208,7 +209,7 @@ impl View {
         for robot in robots {
             let top = robot.body.height;
             let offset = robot.pose.position - ball.position;
-            let near = robot.body.radius + radius + SHADOW;
+            let near = robot.body.radius + radius + SHADOW_REACH;
             if offset.dot(offset) > near * near || !robot.present || ball.height >= top {
                 continue;
             }
@@ -249,7 +250,10 @@ impl View {
             Profile::Ours => {
                 let scale = self.focal / (self.height - height).max(0.1);
                 let away = p - self.at;
-                [IMAGE[0] as f32 * 0.5 + away.x() * scale, IMAGE[1] as f32 * 0.5 - away.y() * scale]
+                [
+                    IMAGE_PIXELS[0] as f32 * 0.5 + away.x() * scale,
+                    IMAGE_PIXELS[1] as f32 * 0.5 - away.y() * scale,
+                ]
             }
             Profile::Grsim => [p.x() * 1000.0, p.y() * 1000.0],
             Profile::ErForce => [0.0, 0.0],
@@ -259,11 +263,11 @@ impl View {
     /// The camera's pose, as geometry packets contain it.
     pub(super) fn calibration(&self, full: bool) -> GeometryCameraCalibration {
         let [x, y, z] = [self.at.x(), self.at.y(), self.height].map(|m| m * 1000.0);
-        let announced = GeometryCameraCalibration {
+        let ours = GeometryCameraCalibration {
             camera_id: self.id,
             focal_length: self.focal,
-            principal_point_x: IMAGE[0] as f32 * 0.5,
-            principal_point_y: IMAGE[1] as f32 * 0.5,
+            principal_point_x: IMAGE_PIXELS[0] as f32 * 0.5,
+            principal_point_y: IMAGE_PIXELS[1] as f32 * 0.5,
             distortion: 0.0,
             // Half a turn about x: columns go with +x, rows with −y, the view down.
             q0: 1.0,
@@ -276,11 +280,11 @@ impl View {
             derived_camera_world_tx: Some(x),
             derived_camera_world_ty: Some(y),
             derived_camera_world_tz: Some(z),
-            pixel_image_width: Some(IMAGE[0]),
-            pixel_image_height: Some(IMAGE[1]),
+            pixel_image_width: Some(IMAGE_PIXELS[0]),
+            pixel_image_height: Some(IMAGE_PIXELS[1]),
         };
         if full {
-            return announced;
+            return ours;
         }
         // What both other simulators send.
         GeometryCameraCalibration {
@@ -297,15 +301,15 @@ impl View {
             tz: 3500.0,
             pixel_image_width: None,
             pixel_image_height: None,
-            ..announced
+            ..ours
         }
     }
 }
 
 /// Columns and rows of a camera frame: a usual 5 MP camera.
-const IMAGE: [u32; 2] = [2448, 2048];
-/// m beyond the field surface that outer cameras see: up to the walls of the room.
-const OUTSIDE: f32 = 2.0;
+const IMAGE_PIXELS: [u32; 2] = [2448, 2048];
+/// m beyond the field surface that outer cameras see: up to the walls of the hall.
+const OUTSIDE_VIEW: f32 = 2.0;
 /// m that a robot's occlusion reaches, seen from a camera at the far end of its view: 0.15 m high, 45°
 /// oblique.
-const SHADOW: f32 = 0.2;
+const SHADOW_REACH: f32 = 0.2;

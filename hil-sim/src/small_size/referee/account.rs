@@ -11,9 +11,9 @@ use super::settings::TeamSettings;
 /// State of one team in the match.
 #[derive(Clone, Debug)]
 pub struct Account {
-    /// Its name on the wire.
+    /// Name on the wire.
     pub name: String,
-    /// Its keeper's shell number.
+    /// Keeper's shell number.
     pub keeper: RobotId,
     /// Number of goals that count.
     pub score: u32,
@@ -25,12 +25,12 @@ pub struct Account {
     pub yellow_cards_given: u32,
     /// Number of red cards given.
     pub red_cards: u32,
-    /// Whether it is able to place the ball.
+    /// True for a team that is able to place the ball.
     pub can_place_ball: bool,
     /// Number of failed placements minus successful ones.
     pub placement_failures: u32,
-    /// Whether it failed too often to place again in this half.
-    pub placement_double_touch_blocked: bool,
+    /// True after too many failures to place again in this half.
+    pub placement_blocked: bool,
     /// Number of time-outs left.
     pub timeouts: u32,
     /// Time left for time-outs, µs.
@@ -40,7 +40,7 @@ pub struct Account {
     pub(super) carded: Option<Instant>,
     /// Robots taken off for cards, in this order.
     pub(super) taken_off: Vec<RobotId>,
-    /// Its last robot that committed a foul.
+    /// The last robot that committed a foul.
     pub(super) last_offender: Option<RobotId>,
 }
 
@@ -56,7 +56,7 @@ impl Account {
             red_cards: 0,
             can_place_ball: settings.can_place_ball,
             placement_failures: 0,
-            placement_double_touch_blocked: false,
+            placement_blocked: false,
             timeouts: limits::TIMEOUTS,
             timeout_left: micros(limits::TIMEOUT_TIME),
             timeout_wanted: None,
@@ -76,9 +76,9 @@ impl Account {
         most.saturating_sub(self.yellow_cards.len() as u32 + self.red_cards)
     }
 
-    /// Whether it may place the ball now.
+    /// True for a team that may place the ball now.
     pub fn places(&self) -> bool {
-        self.can_place_ball && !self.placement_double_touch_blocked
+        self.can_place_ball && !self.placement_blocked
     }
 
     /// Gives a yellow card for that playing time; false where it must be a red one.
@@ -110,13 +110,13 @@ impl Account {
             self.placement_failures = self.placement_failures.saturating_sub(1);
         } else {
             self.placement_failures += 1;
-            self.placement_double_touch_blocked |= self.placement_failures >= limits::PLACEMENT_FAILURES_MAX;
+            self.placement_blocked |= self.placement_failures >= limits::PLACEMENT_FAILURES_MAX;
         }
     }
 
     pub(super) fn begin_half(&mut self) {
         self.placement_failures = 0;
-        self.placement_double_touch_blocked = false;
+        self.placement_blocked = false;
     }
 
     /// The last foul that did not stop the game.
@@ -154,7 +154,7 @@ impl Accounts {
         [&mut self.yellow, &mut self.blue]
     }
 
-    /// Whether that robot is its team's keeper.
+    /// True for the keeper of its team.
     pub fn is_keeper(&self, who: Who) -> bool {
         self.of(who.colour).keeper == who.id
     }

@@ -15,7 +15,8 @@ use super::InternalReferee;
 use super::event::{RefereeEvent, Restart, What};
 use super::field_staff::WorldOrder;
 use super::observation::RobotSeen;
-use super::ready::{ReadyObstacle, Reason};
+use super::ready::ReadyObstacle;
+use super::reason::Reason;
 use super::scene::COLOURS;
 
 /// A match that could not continue although enough time had passed.
@@ -36,12 +37,12 @@ pub struct Blocked {
 pub(super) struct Waiting {
     /// Since when there is an obstacle.
     since: Option<Instant>,
-    /// Whether it exceeded the patience and was reported.
+    /// True once the wait exceeded the patience and was reported.
     reported: bool,
 }
 
 impl InternalReferee {
-    /// What has prevented the match from continuing for longer than `patience`, if it still does.
+    /// The obstacle that has blocked the match for longer than `patience`, while it does.
     pub fn blocked(&self) -> Option<&Blocked> {
         self.metrics.blocks.last().filter(|_| self.waiting.reported)
     }
@@ -99,7 +100,7 @@ impl InternalReferee {
         }
     }
 
-    /// Whether a halt would let robot handlers resolve the obstacles.
+    /// True where robot handlers could resolve an obstacle in a halt.
     fn people_can_help(&self, obstacles: &[ReadyObstacle]) -> bool {
         obstacles.iter().any(|obstacle| match (obstacle.reason, obstacle.team) {
             (Reason::TooManyRobots { .. }, _) => true,
@@ -170,7 +171,7 @@ impl InternalReferee {
                 let mut then = robots.clone();
                 then[index].pose.position = *place;
                 let free = |other: &RobotSeen| {
-                    other.who == *who || other.pose.position.distance(*place) > CARRIED_APART
+                    other.who == *who || other.pose.position.distance(*place) > CARRIED_APART_MIN
                 };
                 let is_keeper = self.accounts.is_keeper(*who);
                 let on_line = place.x().abs() > self.field.length * 0.5 - 3.0 * limits::ROBOT_RADIUS;
@@ -192,4 +193,4 @@ impl InternalReferee {
 }
 
 /// Minimum distance between robots placed by hand, centre to centre, m: two diameters.
-const CARRIED_APART: f32 = 4.0 * limits::ROBOT_RADIUS;
+const CARRIED_APART_MIN: f32 = 4.0 * limits::ROBOT_RADIUS;

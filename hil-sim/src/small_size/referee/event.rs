@@ -6,7 +6,7 @@ use geometry::{Field, Point};
 use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 
-use super::ready::Reason;
+use super::reason::Reason;
 
 /// An observation or decision of the referee.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub struct ShotEvent {
     pub robots: u32,
 }
 
-/// Why a ball in the goal does not count (rules: scoring goals).
+/// Reason for which a ball in the goal does not count (rules: scoring goals).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Invalid {
     /// The scoring team had more robots than allowed.
@@ -49,7 +49,7 @@ pub enum Invalid {
     RecentFoul(Kind),
 }
 
-/// Why a penalty gave no goal (rules: penalty kick).
+/// Reason for which a penalty gave no goal (rules: penalty kick).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PenaltyEnd {
     /// The ball crossed a line elsewhere.
@@ -65,8 +65,8 @@ pub enum PenaltyEnd {
 }
 
 impl PenaltyEnd {
-    /// As text, for the wire.
-    pub fn description(self) -> String {
+    /// Text of the league's message.
+    pub fn message(self) -> String {
         match self {
             Self::Out => "ball left the field".into(),
             Self::Saved => "saved by the keeper".into(),
@@ -98,7 +98,7 @@ macro_rules! kinds {
         }
 
         impl What {
-            /// Its kind, without the evidence.
+            /// Kind of the event, without the evidence.
             pub const fn kind(&self) -> Kind {
                 match self { $(Self::$kind { .. } => Kind::$kind),+ }
             }
@@ -151,7 +151,7 @@ kinds! {
     BallTooFast {
         /// Speed in 3-D, m/s.
         speed: f32,
-        /// Whether the ball flew after the kick.
+        /// True where the ball flew after the kick.
         chipped: bool,
     } = "bot_kicked_ball_too_fast",
     /// Dribbled farther than allowed; the place is the start of the contact.
@@ -236,7 +236,7 @@ kinds! {
     } = "too_many_robots",
     /// A penalty gave no goal.
     PenaltyFailed {
-        /// Why it is over without a goal.
+        /// Reason of its end without a goal.
         reason: PenaltyEnd,
     } = "penalty_kick_failed",
     /// The ball is at its target.
@@ -270,7 +270,7 @@ kinds! {
     /// The match has stood for longer than the referee's patience (ours: the league's game controller waits
     /// without a message).
     Blocked {
-        /// What prevents the game from continuing.
+        /// Obstacle that keeps the game from continuing.
         reason: Reason,
     } = "blocked",
     /// A robot within 0.5 m of the ball in stop after 2 s (ours: the rules leave it to the human referee).
@@ -280,7 +280,7 @@ kinds! {
     } = "bot_too_close_to_ball_in_stop",
 }
 
-/// How the game continues.
+/// Restart of the game.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restart {
     /// From the centre, by this team.
@@ -302,15 +302,15 @@ impl Restart {
         }
     }
 
-    /// Whether the ball is placed on a mark by hand.
+    /// True where the ball is placed on a mark by hand.
     pub const fn is_set_by_hand(self) -> bool {
         matches!(self, Self::Kickoff(_) | Self::Penalty(_))
     }
 }
 
 impl Kind {
-    /// Whether it raises the foul counter, which leads to yellow cards. ([`Kind::InterferedPlacement`] only
-    /// the first time in a placement.)
+    /// True for an event that raises the foul counter, which leads to yellow cards.
+    /// ([`Kind::InterferedPlacement`] only the first time in a placement.)
     pub const fn is_foul(self) -> bool {
         matches!(
             self,
@@ -326,12 +326,12 @@ impl Kind {
         ) || self.is_non_stopping_foul()
     }
 
-    /// Whether it is a foul that does not stop the game.
+    /// True for a foul that does not stop the game.
     pub const fn is_non_stopping_foul(self) -> bool {
         matches!(self, Self::AttackerTouchedBall | Self::BallTooFast | Self::CrashUnique | Self::CrashDrawn)
     }
 
-    /// Whether it is an offence of a team, sanctioned or not: what reports count as fouls.
+    /// True for an offence of a team, sanctioned or not: reports count it as a foul.
     pub const fn is_offence(self) -> bool {
         self.is_foul()
             || matches!(
@@ -344,7 +344,7 @@ impl Kind {
             )
     }
 
-    /// Whether it stops a running game.
+    /// True for an event that stops a running game.
     pub const fn stops_the_game(self) -> bool {
         matches!(
             self,
@@ -369,14 +369,14 @@ impl Kind {
         )
     }
 
-    /// Whether it decides a penalty: a goal where the defenders commit it, no goal where the shooting team
-    /// does.
+    /// True for an event that decides a penalty: a goal where the defenders commit it, no goal where the
+    /// shooting team does.
     pub const fn decides_a_penalty(self) -> bool {
         self.is_non_stopping_foul()
             || matches!(self, Self::BoundaryCrossing | Self::DribbledTooFar | Self::Pushed)
     }
 
-    /// How the game continues after it; `None` where it changes nothing.
+    /// Restart after the event; `None` where it changes nothing.
     pub const fn restart(self, by: Option<Colour>) -> Option<Restart> {
         match (self, by) {
             (Self::NoProgress | Self::TooManyRobots, _) => Some(Restart::ForceStart),
@@ -401,7 +401,7 @@ impl Kind {
         }
     }
 
-    /// Whether the ball left the field by it.
+    /// True for an event by which the ball left the field.
     pub const fn is_ball_out(self) -> bool {
         matches!(self, Self::LeftTouchLine | Self::LeftGoalLine | Self::AimlessKick | Self::PossibleGoal)
     }

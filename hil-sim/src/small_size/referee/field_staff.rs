@@ -27,7 +27,7 @@ pub enum WorldOrder {
     ReturnRobot(Who, Pose<Field>),
 }
 
-/// Requested manual acts.
+/// Manual acts that wait to be carried out, with the times that they depend on.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FieldStaff {
     pub(super) orders: VecDeque<WorldOrder>,
@@ -35,7 +35,7 @@ pub(super) struct FieldStaff {
     put_at: Option<Instant>,
     /// Playing time for which each team has had too many robots, in the order of [`COLOURS`], µs.
     crowded: [u64; 2],
-    /// Whether the game is halted for a manual act.
+    /// True while the game is halted for a manual act.
     pub(super) called: bool,
     /// Time at which a robot of each team was last taken off or returned.
     changed: [Option<Instant>; 2],
@@ -48,7 +48,7 @@ impl FieldStaff {
 }
 
 impl InternalReferee {
-    /// Whether the ball was placed by hand in this stop.
+    /// True where the ball was placed by hand in this stop.
     pub(super) fn put_by_hand(&self) -> bool {
         self.field_staff.put_at.is_some()
     }
@@ -61,8 +61,8 @@ impl InternalReferee {
         }
         let begun = self.field_staff.put_at.unwrap_or(Instant(self.state.since()));
         let waited = self.now.since(begun);
-        let stands = |robot: &RobotSeen| robot.pose.position.distance(target) < limits::ROBOT_RADIUS + ROOM;
-        let room = !robots.iter().any(stands);
+        let near = limits::ROBOT_RADIUS + PLACEMENT_ROOM;
+        let room = robots.iter().all(|robot| robot.pose.position.distance(target) >= near);
         if waited >= self.settings.person_delay && (room || waited >= self.settings.patience) {
             self.field_staff.orders.push_back(WorldOrder::PutBall(target));
             self.field_staff.put_at = Some(self.now);
@@ -174,7 +174,7 @@ impl InternalReferee {
 }
 
 /// Minimum distance from a robot's side, m, for placing the ball by hand: a hand's breadth.
-const ROOM: f32 = 0.1;
+const PLACEMENT_ROOM: f32 = 0.1;
 /// Time for taking off or returning a robot, µs: two seconds, the game controller's tolerance in counting
 /// robots.
 const CHANGE_TIME: u64 = 2_000_000;

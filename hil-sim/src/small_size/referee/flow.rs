@@ -12,11 +12,12 @@ use rules::{Colour, FieldSpec, Phase, limits};
 use super::InternalReferee;
 use super::event::{Kind, PenaltyEnd, Restart, What};
 use super::observation::RobotSeen;
-use super::ready::{ReadyObstacle, Reason};
+use super::ready::ReadyObstacle;
+use super::reason::Reason;
 
-/// Who brings the ball to its position.
+/// Party that brings the ball to its position.
 enum Placer {
-    /// It lies near enough.
+    /// The ball lies near enough.
     Nobody,
     Team(Colour),
     Person,
@@ -61,7 +62,7 @@ impl InternalReferee {
             }
             Phase::Run | Phase::Kickoff(_) | Phase::FreeKick(_) => {
                 let lost = self.now.since(self.ball_seen_at);
-                if lost >= BALL_LOST {
+                if lost >= BALL_LOST_AFTER {
                     let what = What::NoProgress { duration: lost.as_secs_f32() };
                     self.judge(&self.event(None, what));
                 }
@@ -70,7 +71,7 @@ impl InternalReferee {
     }
 
     fn go_on_from_stop(&mut self, robots: &[RobotSeen], age: Duration) {
-        if self.stage == Stage::PostGame || age < RECEIVED {
+        if self.stage == Stage::PostGame || age < STOP_MIN {
             return;
         }
         for team in super::scene::COLOURS {
@@ -177,24 +178,24 @@ impl InternalReferee {
     }
 }
 
-/// Whether robots can reach the ball: it is neither in or behind a goal nor in a corner of the field surface
-/// (rules: ball placement).
+/// True for a ball that robots can reach: it is neither in or behind a goal nor in a corner of the field
+/// surface (rules: ball placement).
 pub(super) fn is_reachable(field: &FieldSpec, ball: Point<Field>) -> bool {
     let (x, y) = (ball.x().abs(), ball.y().abs());
     let goal = field.goal_width * 0.5 + field.goal_wall + limits::ROBOT_RADIUS;
     let behind = x > field.length * 0.5 && y < goal;
     let from_wall = (field.length * 0.5 + field.goal_line_margin - x, field.width * 0.5 + field.margin - y);
-    let corner = from_wall.0 < CORNER && from_wall.1 < CORNER;
+    let corner = from_wall.0 < CORNER_DISTANCE && from_wall.1 < CORNER_DISTANCE;
     !behind && !corner && from_wall.0 > 0.0 && from_wall.1 > 0.0
 }
 
 /// Minimum duration of a stop, so that every receiver sees it: two packets.
-const RECEIVED: Duration = Duration::millis(50);
+const STOP_MIN: Duration = Duration::millis(50);
 /// Time without detection after which a ball in play is searched for and placed by hand: as long as the
 /// rules' graces.
-const BALL_LOST: Duration = Duration::millis(2_000);
+const BALL_LOST_AFTER: Duration = Duration::millis(2_000);
 /// Number of interferences with one placement after which the ball is placed by hand (rules: the referee is
 /// encouraged to).
 const INTERFERENCES_MAX: usize = 3;
 /// Distance from two walls, m, below which a ball is in a corner: a robot's diameter.
-const CORNER: f32 = 2.0 * limits::ROBOT_RADIUS;
+const CORNER_DISTANCE: f32 = 2.0 * limits::ROBOT_RADIUS;

@@ -60,7 +60,7 @@ impl InternalReferee {
         }
     }
 
-    /// Whether the event belongs to the present phase: events of play to play, those of placements to
+    /// True for an event that belongs to the present phase: events of play to play, those of placements to
     /// placements.
     fn is_in_time(&self, kind: Kind) -> bool {
         match kind {
@@ -94,12 +94,8 @@ impl InternalReferee {
 
     fn count_foul(&mut self, event: &RefereeEvent) {
         let kind = event.what.kind();
-        let earlier = |team| {
-            let same = |other: &&RefereeEvent| other.what.kind() == kind && other.by == Some(team);
-            self.recent.iter().filter(same).count()
-        };
         // Only the first interference with a placement counts.
-        if kind == Kind::InterferedPlacement && event.by.is_some_and(|team| earlier(team) > 1) {
+        if kind == Kind::InterferedPlacement && event.by.is_some() && self.recent_count(kind, event.by) > 1 {
             return;
         }
         let offenders: &[RobotOf] = &match &event.what {
@@ -156,10 +152,14 @@ impl InternalReferee {
 
     /// The second such foul of a team in one stoppage halts the game, once.
     fn second_in_a_stop_halts(&mut self, team: Option<Colour>) {
-        let same = |event: &&RefereeEvent| event.what.kind() == Kind::AttackerTooClose && event.by == team;
-        if self.recent.iter().filter(same).count() == 2 {
+        if self.recent_count(Kind::AttackerTooClose, team) == 2 {
             self.give(RefereeCommand::Halt);
         }
+    }
+
+    /// Number of a team's events of that kind in this stoppage.
+    fn recent_count(&self, kind: Kind, by: Option<Colour>) -> usize {
+        self.recent.iter().filter(|event| event.what.kind() == kind && event.by == by).count()
     }
 
     fn placement_ended(&mut self, event: &RefereeEvent) {
@@ -175,7 +175,7 @@ impl InternalReferee {
         if !succeeded {
             self.next = Some(Restart::FreeKick(team.other()));
         } else if self.next == Some(Restart::FreeKick(team.other()))
-            && self.accounts.of(team.other()).placement_double_touch_blocked
+            && self.accounts.of(team.other()).placement_blocked
         {
             self.next = Some(Restart::FreeKick(team));
         }

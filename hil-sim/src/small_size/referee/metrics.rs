@@ -83,7 +83,7 @@ pub struct Metrics {
 struct Leg {
     who: Who,
     from: Point<Field>,
-    /// Whether it was already counted as a shot.
+    /// True once the path was counted as a shot.
     shot: bool,
 }
 
@@ -176,7 +176,7 @@ impl InternalReferee {
         if leg.who == who {
             if touching {
                 // Still at the robot; near to the position of the previous touch it may be the same kick.
-                leg.shot &= leg.from.distance(from) < SEPARATE;
+                leg.shot &= leg.from.distance(from) < LEFT_ROBOT_DISTANCE;
                 leg.from = from;
             } else {
                 let leg = *leg;
@@ -187,7 +187,7 @@ impl InternalReferee {
         // In a duel the touching robot alternates in every step; a change of possession counts when the ball
         // is away.
         let (leg, now) = (*leg, if touching { from } else { ball.position });
-        if leg.from.distance(now) < SEPARATE {
+        if leg.from.distance(now) < LEFT_ROBOT_DISTANCE {
             return;
         }
         let team = self.metrics.team_mut(leg.who.colour);
@@ -204,7 +204,7 @@ impl InternalReferee {
         let end = self.own_end(leg.who.colour).opposite();
         let sign = end.sign() as f32;
         let forward = ball.velocity.x() * sign;
-        let away = leg.from.distance(ball.position) >= SEPARATE;
+        let away = leg.from.distance(ball.position) >= LEFT_ROBOT_DISTANCE;
         if leg.shot || !away || speed < SHOT_SPEED || forward <= 0.0 || leg.from.x() * sign < 0.0 {
             return;
         }
@@ -231,6 +231,6 @@ impl InternalReferee {
 const SHOT_SPEED: f32 = 1.5;
 /// Distance from the last touch, m, at which the ball has left the robot: half a robot's diameter, more than
 /// a dribbler's bounces.
-const SEPARATE: f32 = 0.1;
+const LEFT_ROBOT_DISTANCE: f32 = 0.1;
 /// Minimum distance between two touches of a pass, m.
 const PASS_LENGTH: f32 = 0.5;

@@ -22,14 +22,15 @@
 mod account;
 mod blocked;
 mod event;
-mod event_loop;
 mod field_staff;
 mod flow;
 mod judge;
 mod look;
+mod manual;
 mod metrics;
 mod observation;
 mod ready;
+mod reason;
 pub mod remote;
 mod scene;
 mod settings;
@@ -47,15 +48,17 @@ use geometry::{Field, GoalEnd, Point};
 use protocol::Instant;
 use rules::state::{CommandVerdict, GameState, RefereeCommand, Stage};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
+use thiserror::Error;
 
 pub use account::{Account, Accounts};
 pub use blocked::Blocked;
 pub use event::{Invalid, Kind, PenaltyEnd, RefereeEvent, Restart, ShotEvent, What};
-pub use event_loop::Card;
 pub use field_staff::WorldOrder;
+pub use manual::Card;
 pub use metrics::{FoulCounts, Metrics, TeamMetrics};
 pub use observation::{BallSeen, CrashSeen, Observation, RobotSeen};
-pub use ready::{ReadyObstacle, Reason};
+pub use ready::ReadyObstacle;
+pub use reason::Reason;
 pub use settings::{MatchClock, RefereeSettings, TeamSettings};
 
 use crate::rng::Stream;
@@ -64,20 +67,9 @@ use scene::{GameView, Scene};
 use watch::Watch;
 
 /// The four-legged league has another referee, `hil_sim::Referee`, with other rules.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{} has no referee of the Small Size League; use ssl-2013, division-b or division-a", .0.name())]
 pub struct NoRules(pub League);
-
-impl core::fmt::Display for NoRules {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        write!(
-            f,
-            "{} has no referee of the Small Size League; use ssl-2013, division-b or division-a",
-            self.0.name()
-        )
-    }
-}
-
-impl core::error::Error for NoRules {}
 
 /// Referees a match from true positions; sans-IO.
 #[derive(Clone, Debug)]
@@ -230,7 +222,7 @@ impl InternalReferee {
         self.command
     }
 
-    /// Whether the match is over.
+    /// True once the match is over.
     pub fn is_over(&self) -> bool {
         self.stage == Stage::PostGame
     }
@@ -317,7 +309,7 @@ impl InternalReferee {
         }
     }
 
-    /// Issues a command.
+    /// Issues a command of the league, with its consequences for restarts and packets.
     fn give(&mut self, command: RefereeCommand) {
         let received = self.state.receive(command, self.now.0, Some(self.ball.position));
         if !matches!(received, CommandVerdict::Followed | CommandVerdict::Repeated) {
@@ -350,7 +342,7 @@ impl InternalReferee {
     }
 }
 
-/// s → µs.
+/// Seconds as microseconds, rounded towards zero.
 fn micros(seconds: f32) -> i64 {
     (f64::from(seconds) * 1e6) as i64
 }

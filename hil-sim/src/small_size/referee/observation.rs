@@ -9,7 +9,7 @@ use protocol::{Instant, Who};
 /// True state of the ball at the moment of an observation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallSeen {
-    /// Its position projected on the ground, m.
+    /// Position projected on the ground, m.
     pub position: Point<Field>,
     /// Height of its lowest point above the field surface, m: 0 while it rolls.
     pub height: f32,
@@ -25,7 +25,7 @@ impl BallSeen {
         Self { position, height: 0.0, velocity: Vector::default(), climb: 0.0 }
     }
 
-    /// Its speed in 3-D, m/s.
+    /// Speed in 3-D, m/s.
     pub fn speed(&self) -> f32 {
         geometry::math::sqrt(self.velocity.dot(self.velocity) + self.climb * self.climb)
     }
@@ -47,7 +47,7 @@ pub struct RobotSeen {
     pub pose: Pose<Field>,
     /// Velocity of its centre, m/s.
     pub velocity: Vector<Field>,
-    /// Whether it touched the ball since the last observation.
+    /// True where the robot touched the ball since the last observation.
     pub touches_ball: bool,
 }
 

@@ -15,125 +15,7 @@ use rules::{Colour, Phase, limits};
 use super::InternalReferee;
 use super::event::Restart;
 use super::observation::RobotSeen;
-
-/// Why the game cannot continue; distances in m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reason {
-    /// The team has more robots than allowed outside its goal substitution area.
-    TooManyRobots {
-        /// Number of robots allowed on the field.
-        allowed: u32,
-        /// Number of robots on the field.
-        on_field: u32,
-    },
-    /// The robot is too near to the ball.
-    NearBall {
-        /// From its nearest side to the ball's centre.
-        distance: f32,
-    },
-    /// The ball is far from the position of the restart.
-    BallOffPlace {
-        /// From that position to the ball, m.
-        distance: f32,
-    },
-    /// The ball is outside the lines.
-    BallOut,
-    /// The ball is too near to a defence area.
-    BallNearArea {
-        /// From the area to the ball, m.
-        distance: f32,
-    },
-    /// The ball moves faster than the controller allows.
-    BallMoves {
-        /// Speed of the ball, m/s.
-        speed: f32,
-    },
-    /// The ball has to be placed by hand, and was not.
-    BallNotPut {
-        /// From its target position.
-        distance: f32,
-    },
-    /// The robot is not entirely in its own half at a kick-off.
-    OtherHalf {
-        /// Distance of its centre within its own half; negative in the other.
-        inside: f32,
-    },
-    /// The robot is in the centre circle at a kick-off and is not the only one of the kicking team.
-    CentreCircle {
-        /// From the centre of the field, m.
-        distance: f32,
-    },
-    /// The penalty's keeper is not on the field.
-    NoKeeper,
-    /// The penalty's keeper is not on its line between the posts.
-    KeeperOffLine {
-        /// Its centre to the goal line.
-        from_line: f32,
-        /// Its centre to the goal's middle, along the line.
-        across: f32,
-    },
-    /// The robot is not far enough behind the ball at a penalty.
-    NotBehindBall {
-        /// How far it is behind.
-        behind: f32,
-    },
-}
-
-impl Reason {
-    /// Its label, without the numbers.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::TooManyRobots { .. } => "too_many_robots",
-            Self::NearBall { .. } => "robot_near_ball",
-            Self::BallOffPlace { .. } => "ball_off_place",
-            Self::BallOut => "ball_out",
-            Self::BallNearArea { .. } => "ball_near_area",
-            Self::BallMoves { .. } => "ball_moves",
-            Self::BallNotPut { .. } => "ball_not_put",
-            Self::OtherHalf { .. } => "robot_in_other_half",
-            Self::CentreCircle { .. } => "robot_in_centre_circle",
-            Self::NoKeeper => "no_keeper",
-            Self::KeeperOffLine { .. } => "keeper_off_line",
-            Self::NotBehindBall { .. } => "robot_not_behind_ball",
-        }
-    }
-
-    /// Only the ball's position is wrong: the human referee may place it by hand at any time (rules: ball
-    /// placement).
-    pub const fn is_balls(self) -> bool {
-        matches!(
-            self,
-            Self::BallOffPlace { .. } | Self::BallOut | Self::BallNearArea { .. } | Self::BallNotPut { .. }
-        )
-    }
-}
-
-impl fmt::Display for Reason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooManyRobots { allowed, on_field } => write!(f, "{on_field} robots, {allowed} allowed"),
-            Self::NearBall { distance } => write!(f, "{distance:.2} m from the ball"),
-            Self::BallOffPlace { distance } => write!(f, "the ball is {distance:.2} m from its place"),
-            Self::BallOut => f.write_str("the ball is outside the field"),
-            Self::BallNearArea { distance } => {
-                write!(f, "the ball is {distance:.2} m from a defence area")
-            }
-            Self::BallMoves { speed } => write!(f, "the ball moves at {speed:.2} m/s"),
-            Self::BallNotPut { distance } => {
-                write!(f, "the ball has to be put down by hand, {distance:.2} m away")
-            }
-            Self::OtherHalf { inside } => write!(f, "{inside:.2} m inside its own half"),
-            Self::CentreCircle { distance } => {
-                write!(f, "in the centre circle, {distance:.2} m from its centre")
-            }
-            Self::NoKeeper => f.write_str("no keeper on the field"),
-            Self::KeeperOffLine { from_line, across } => {
-                write!(f, "keeper {from_line:.2} m off its line, {across:.2} m from the middle")
-            }
-            Self::NotBehindBall { behind } => write!(f, "{behind:.2} m behind the ball"),
-        }
-    }
-}
+use super::reason::Reason;
 
 /// A condition that prevents the game from continuing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,7 +24,7 @@ pub struct ReadyObstacle {
     pub team: Option<Colour>,
     /// The robot that caused it; `None` if no single one did.
     pub robot: Option<RobotId>,
-    /// What is wrong, with the measured values.
+    /// Condition that is not met, with the measured values.
     pub reason: Reason,
 }
 
@@ -172,12 +54,12 @@ impl fmt::Display for ReadyObstacle {
 }
 
 impl InternalReferee {
-    /// Whether the game controller counts that robot as on the field.
+    /// True for a robot that the game controller counts as on the field.
     pub(super) fn counts(&self, robot: &RobotSeen) -> bool {
         self.field.counts(self.own_end(robot.who.colour), robot.pose.position)
     }
 
-    /// What prevents this stop from ending with `next`; empty where nothing does.
+    /// Obstacles to the end of this stop with `next`.
     pub(super) fn obstacles_in_stop(
         &self,
         robots: &[RobotSeen],
@@ -195,11 +77,7 @@ impl InternalReferee {
         }
         // The team that continues with a free kick may be at the ball already, so that it can place the ball
         // and then kick.
-        let must_keep_away = |robot: &&RobotSeen| match next {
-            Restart::FreeKick(team) => robot.who.colour != team,
-            _ => true,
-        };
-        for robot in robots.iter().filter(must_keep_away) {
+        for robot in robots.iter().filter(|robot| next != Restart::FreeKick(robot.who.colour)) {
             let distance = robot.pose.position.distance(ball) - limits::ROBOT_RADIUS;
             if distance < limits::BALL_DISTANCE - DISTANCE_TOLERANCE {
                 found.push(ReadyObstacle::robot(robot.who, Reason::NearBall { distance }));
@@ -209,26 +87,29 @@ impl InternalReferee {
         if distance > limits::PLACEMENT_SKIP_DISTANCE {
             found.push(ReadyObstacle::ball(Reason::BallOffPlace { distance }));
         }
-        let from_area = |p| {
-            let ends = [GoalEnd::Negative, GoalEnd::Positive];
-            ends.map(|end| self.field.distance_to_area(end, p)).into_iter().fold(f32::INFINITY, f32::min)
-        };
         // On the field of 2013, which the controller does not support, marks and spots lie nearer than that.
         let least = limits::PLACEMENT_SKIP_AREA_DISTANCE;
-        let distance = from_area(ball);
-        if distance < least && from_area(target) >= least {
+        let distance = self.distance_to_areas(ball);
+        if distance < least && self.distance_to_areas(target) >= least {
             found.push(ReadyObstacle::ball(Reason::BallNearArea { distance }));
         }
         if !self.field.contains(ball) {
             found.push(ReadyObstacle::ball(Reason::BallOut));
         }
-        if speed >= BALL_STEADY {
+        if speed >= BALL_STEADY_SPEED_MAX {
             found.push(ReadyObstacle::ball(Reason::BallMoves { speed }));
         }
         found
     }
 
-    /// What prevents that team's kick-off from getting its NORMAL_START.
+    /// Distance from the nearer of both defence areas, m.
+    fn distance_to_areas(&self, p: Point<Field>) -> f32 {
+        let [one, other] =
+            [GoalEnd::Negative, GoalEnd::Positive].map(|end| self.field.distance_to_area(end, p));
+        one.min(other)
+    }
+
+    /// Obstacles to the NORMAL_START of that team's kick-off.
     pub(super) fn obstacles_at_kickoff(&self, robots: &[RobotSeen], team: Colour) -> Vec<ReadyObstacle> {
         let centre = Point::new(0.0, 0.0);
         let radius = self.field.center_radius;
@@ -256,7 +137,7 @@ impl InternalReferee {
         found
     }
 
-    /// What prevents that team's penalty from getting its NORMAL_START.
+    /// Obstacles to the NORMAL_START of that team's penalty.
     pub(super) fn obstacles_at_penalty(&self, robots: &[RobotSeen], team: Colour) -> Vec<ReadyObstacle> {
         let keeper = Who { colour: team.other(), id: self.accounts.of(team.other()).keeper };
         let goal = self.own_end(team.other());
@@ -302,7 +183,7 @@ impl InternalReferee {
         robots
     }
 
-    /// What prevents the next command of this phase; empty in phases that do not wait.
+    /// Obstacles to the next command of this phase; empty in phases that do not wait.
     pub(super) fn obstacles(&self, robots: &[RobotSeen]) -> Vec<ReadyObstacle> {
         match self.phase() {
             Phase::Stop => {
@@ -319,4 +200,4 @@ impl InternalReferee {
 /// Tolerance of the game controller in distances to the ball, m (`distanceThreshold`).
 const DISTANCE_TOLERANCE: f32 = 0.05;
 /// Speed below which the ball counts as lying still for the game controller, m/s (`ballSteadyThreshold`).
-const BALL_STEADY: f32 = 0.2;
+const BALL_STEADY_SPEED_MAX: f32 = 0.2;

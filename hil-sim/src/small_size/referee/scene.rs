@@ -13,7 +13,7 @@ use super::observation::{BallSeen, CrashSeen, RobotSeen};
 /// Both colours, in the order of the wire.
 pub(super) const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];
 
-/// One observation.
+/// Checked observation of the world.
 pub(super) struct Scene<'a> {
     pub(super) now: Instant,
     pub(super) ball: BallSeen,
@@ -55,7 +55,7 @@ impl GameView<'_> {
         now.since(self.since).as_secs_f32()
     }
 
-    /// Whether a team may play the ball.
+    /// True where a team may play the ball.
     pub(super) fn is_running(&self) -> bool {
         is_running(self.phase)
     }
@@ -66,7 +66,7 @@ pub(super) fn own_end(blue_on_positive: bool, team: Colour) -> GoalEnd {
     if (team == Colour::Blue) == blue_on_positive { GoalEnd::Positive } else { GoalEnd::Negative }
 }
 
-/// Whether a team may play the ball. The match clock runs then.
+/// True where a team may play the ball; the match clock runs then.
 pub(super) fn is_running(phase: Phase<Colour>) -> bool {
     matches!(phase, Phase::Run | Phase::FreeKick(_) | Phase::Kickoff(_) | Phase::Penalty(_))
 }

@@ -3,7 +3,7 @@
 use protocol::{Duration, RobotId};
 use rules::{Colour, League};
 
-/// Which time counts down in a half.
+/// Time that counts down in a half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchClock {
     /// Playing time, as in the rules: it stands still in halt, stop, placement and preparation. Per half; 300
@@ -23,14 +23,14 @@ pub enum MatchClock {
 /// Settings of one team.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TeamSettings {
-    /// Its name on the wire.
+    /// Name on the wire.
     pub name: String,
-    /// Its keeper's shell number.
+    /// Keeper's shell number.
     pub keeper: RobotId,
-    /// Whether it can place the ball. (Optional in division B, required in division A.)
+    /// True for a team that can place the ball. (Optional in division B, required in division A.)
     pub can_place_ball: bool,
-    /// Whether its robots drive. Where not, those that block the match are moved by hand, and all of them at
-    /// half-time.
+    /// True for a team whose robots drive. Of one whose robots do not, those that block the match are moved
+    /// by hand, and all of them at half-time.
     pub drives: bool,
 }
 
@@ -39,23 +39,23 @@ pub struct TeamSettings {
 pub struct RefereeSettings {
     /// League: field, ball, robots and the rules that differ between divisions.
     pub league: League,
-    /// Which time counts down in a half.
+    /// Time that counts down in a half.
     pub clock: MatchClock,
     /// Pause between the halves, in simulated time. 300 s by the rules, for human teams; programs need none,
     /// so 3 s.
     pub half_time: Duration,
-    /// Whether a draw is no possible result: overtime of half a half each, then a shoot-out. Their time is
+    /// True where a draw is no possible result: overtime of half a half each, then a shoot-out. Their time is
     /// added to the match, to `MatchClock::Simulated` too.
     pub knockout: bool,
-    /// Whether blue's goal is at +x in the first half. The teams change ends at half-time.
+    /// True where blue's goal is at +x in the first half. The teams change ends at half-time.
     pub blue_on_positive_half: bool,
     /// The team that kicks off first; the other does in the second half.
     pub first_kickoff: Colour,
-    /// Whether yellow cards are given for every third foul. Where not, fouls are only counted.
+    /// True where every third foul gives a yellow card; else fouls are only counted.
     pub cards: bool,
     /// Maximum number of robots of a team without cards; `None` for the division's number.
     pub max_robots: Option<u8>,
-    /// Whether to judge what the rules leave to the human referee as well: pushing and holding.
+    /// True to judge pushing and holding too, which the rules leave to the human referee.
     pub judge_manual_fouls: bool,
     /// Send `designated_position` whenever a place is known, in every command, as the real game controller
     /// does (contrary to its own documentation), instead of in ball placement only.
@@ -80,16 +80,17 @@ pub struct RefereeSettings {
     pub blue: TeamSettings,
 }
 
+impl TeamSettings {
+    /// A team with keeper 0 that places the ball and whose robots drive.
+    pub fn new(name: &str) -> Self {
+        Self { name: name.into(), keeper: KEEPER, can_place_ball: true, drives: true }
+    }
+}
+
 impl RefereeSettings {
     /// A match of that league by the rules: 2 × 300 s of playing time, blue defends +x, yellow kicks off,
     /// cards.
     pub fn new(league: League) -> Self {
-        let team = |name: &str| TeamSettings {
-            name: name.into(),
-            keeper: KEEPER,
-            can_place_ball: true,
-            drives: true,
-        };
         Self {
             league,
             clock: MatchClock::Playing { half: Duration::millis(300_000) },
@@ -106,8 +107,8 @@ impl RefereeSettings {
             person_delay: Duration::millis(2_000),
             patience: Duration::millis(10_000),
             halt: Duration::millis(3_000),
-            yellow: team("yellow"),
-            blue: team("blue"),
+            yellow: TeamSettings::new("yellow"),
+            blue: TeamSettings::new("blue"),
         }
     }
 

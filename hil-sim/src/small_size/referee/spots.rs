@@ -76,7 +76,7 @@ pub(super) fn blamed(event: &RefereeEvent) -> Option<Colour> {
     }
 }
 
-/// Whether the event leads to a restart of neither team: a ball that left the field without any touch.
+/// True for an event that leads to a restart of neither team: a ball that left the field without any touch.
 pub(super) fn is_nobodys(kind: Kind, by: Option<Colour>) -> bool {
     by.is_none() && kind.is_ball_out()
 }

@@ -11,7 +11,7 @@ use super::event::Restart;
 use super::{InternalReferee, micros};
 
 impl InternalReferee {
-    /// What the game controller would send now.
+    /// Packet that the game controller would send now.
     pub fn packet(&self) -> wire::Referee {
         let placing = matches!(self.phase(), Phase::BallPlacement(_));
         let position = self.placement.filter(|_| placing || self.settings.position_always);
@@ -101,7 +101,7 @@ impl InternalReferee {
             can_place_ball: Some(account.can_place_ball),
             max_allowed_bots: Some(self.allowed_now(team)),
             bot_substitution_intent: Some(false),
-            ball_placement_failures_reached: Some(account.placement_double_touch_blocked),
+            ball_placement_failures_reached: Some(account.placement_blocked),
             bot_substitution_allowed: Some(false),
             bot_substitutions_left: Some(rules::limits::SUBSTITUTIONS),
             bot_substitution_time_left: Some(unsigned(micros(0.0))),

@@ -49,16 +49,16 @@ impl RefereeEvent {
             }
             What::PossibleGoal { shot } => sent!(PossibleGoal: goal(Some(shot), None)),
             What::Goal { shot } => {
-                let description = if shot.is_some() { "valid" } else { "awarded for a foul in a penalty" };
-                sent!(Goal: goal(shot.as_ref(), Some(description.into())))
+                let message = if shot.is_some() { "valid" } else { "awarded for a foul in a penalty" };
+                sent!(Goal: goal(shot.as_ref(), Some(message.into())))
             }
             What::InvalidGoal { shot, reason } => {
-                let description = match reason {
+                let message = match reason {
                     Invalid::TooManyRobots => "too many robots".into(),
                     Invalid::TooHigh => format!("the ball was {:.2} m high", shot.max_height),
                     Invalid::RecentFoul(kind) => format!("recent foul: {}", kind.label()),
                 };
-                sent!(InvalidGoal: goal(Some(shot), Some(description)))
+                sent!(InvalidGoal: goal(Some(shot), Some(message)))
             }
             What::NoProgress { duration } => sent!(NoProgressInGame { location, time: Some(*duration) }),
             What::DoubleTouch => sent!(AttackerDoubleTouchedBall { by_team, by_bot, location }),
@@ -85,7 +85,7 @@ impl RefereeEvent {
                 sent!(PlacementFailed { by_team, remaining_distance, nearest_own_bot_distance })
             }
             What::PenaltyFailed { reason } => {
-                sent!(PenaltyKickFailed { by_team, location, reason: Some(reason.description()) })
+                sent!(PenaltyKickFailed { by_team, location, reason: Some(reason.message()) })
             }
             What::MultipleFouls { caused_by } => {
                 let caused_game_events =

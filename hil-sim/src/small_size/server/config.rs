@@ -105,7 +105,7 @@ impl Server {
                 Ok(ball) => {
                     self.world.set_ball_parameters(ball);
                     let switch = models.straight_two_phase.map(|flat| flat.k_switch);
-                    let other = switch.filter(|switch| (switch - SOLID).abs() > SWITCH_TOLERANCE);
+                    let other = switch.filter(|switch| (switch - SOLID_BALL_SWITCH).abs() > SWITCH_TOLERANCE);
                     refused.extend(other.map(Refusal::BallSwitch));
                 }
                 Err(why) => refused.push(Refusal::BallModel(why)),
@@ -160,8 +160,7 @@ impl Server {
             ("realism.command_delay", radio.delay as f32 * 0.001, COMMAND_DELAY_MAX),
         ] {
             if !(0.0..=high).contains(&value) {
-                let error =
-                    crate::four_legged::parameters::ParameterError::Range { name, value, low: 0.0, high };
+                let error = crate::parameters::ParameterError::Range { name, value, low: 0.0, high };
                 return Err(Refusal::Realism(error));
             }
         }
@@ -183,7 +182,7 @@ impl Server {
     }
 }
 
-/// What a specification lacks for a simulator that requires complete ones.
+/// Value that a specification lacks for a simulator that requires complete ones.
 fn lack(specs: &RobotSpecs) -> Option<&'static str> {
     let limits = specs.limits.unwrap_or_default();
     let custom = specs
@@ -300,7 +299,7 @@ fn custom_of<T: Message + Default>(custom: &Any, name: &str) -> Result<T, Refusa
 }
 
 /// Share of a kick's speed below which a solid ball rolls.
-const SOLID: f64 = 5.0 / 7.0;
+const SOLID_BALL_SWITCH: f64 = 5.0 / 7.0;
 /// Tolerance for a rounded share on the wire.
 const SWITCH_TOLERANCE: f64 = 1e-3;
 /// Maximum delay of commands, s: larger values are refused.

@@ -62,8 +62,8 @@ impl Server {
         let here = self.world.ball_pulled_to().filter(|_| by_force).unwrap_or(before.position);
         let to = Point::new(asked.x.unwrap_or(here.x()), asked.y.unwrap_or(here.y()));
         let height = asked.z.unwrap_or(before.height);
-        if !self.in_server_loop(to) || !(0.0..=SERVER_LOOP_HEIGHT).contains(&height) {
-            refused.push(Refusal::OutsideServerLoop("teleport_ball"));
+        if !self.in_hall(to) || !(0.0..=HALL_HEIGHT).contains(&height) {
+            refused.push(Refusal::OutsideHall("teleport_ball"));
             return;
         }
         if by_force {
@@ -138,9 +138,9 @@ impl Server {
             position: Point::new(asked.x.unwrap_or(pose.position.x()), asked.y.unwrap_or(pose.position.y())),
             heading: asked.orientation.map_or(pose.heading, Angle::new),
         };
-        if !self.in_server_loop(to.position) {
+        if !self.in_hall(to.position) {
             if !compatibility.parks {
-                return Err(Refusal::OutsideServerLoop("teleport_robot"));
+                return Err(Refusal::OutsideHall("teleport_robot"));
             }
             // So far away no camera sees it and nothing touches it: it is off the field surface until it is
             // placed there again.
@@ -179,9 +179,9 @@ impl Server {
         Ok(())
     }
 
-    fn in_server_loop(&self, p: Point<geometry::Field>) -> bool {
+    fn in_hall(&self, p: Point<geometry::Field>) -> bool {
         let [x, y] = self.world.pitch().corner();
-        p.x().abs() <= x + SERVER_LOOP && p.y().abs() <= y + SERVER_LOOP
+        p.x().abs() <= x + HALL_MARGIN && p.y().abs() <= y + HALL_MARGIN
     }
 }
 
@@ -233,9 +233,9 @@ pub(super) fn who(id: &ssl::common::RobotId) -> Result<Who, Refusal> {
     }
 }
 
-/// Distance from the boards to the walls of the room, m.
-const SERVER_LOOP: f32 = 2.0;
-/// Height of the room, m.
-const SERVER_LOOP_HEIGHT: f32 = 20.0;
+/// Distance from the boards to the walls of the hall, m.
+const HALL_MARGIN: f32 = 2.0;
+/// Height of the hall, m.
+const HALL_HEIGHT: f32 = 20.0;
 /// Maximum speed of a teleported ball, m/s.
 const BALL_SPEED_MAX: f32 = 20.0;

@@ -73,7 +73,7 @@ impl Server {
             Drive::Local(Twist { linear, angular: command.velangular })
         };
         let (flat, up) = (command.kickspeedx, command.kickspeedz);
-        let kick = (flat > KICK_LEAST || up > KICK_LEAST).then(|| {
+        let kick = (flat > KICK_SPEED_MIN || up > KICK_SPEED_MIN).then(|| {
             let (flat, up) = (flat.max(0.0), up.max(0.0));
             let most = robot.kick_limits[usize::from(up > 0.0)];
             KickCommand { speed: math::sqrt(flat * flat + up * up).min(most), angle: math::atan2(up, flat) }
@@ -84,7 +84,7 @@ impl Server {
 
     /// Teleports, with the same code as the league's protocol.
     fn replace(&mut self, replacement: &GrsimReplacement) {
-        let mut unsaid = Vec::new();
+        let mut refused = Vec::new();
         for robot in &replacement.robots {
             let team = if robot.yellowteam { ssl::common::Team::Yellow } else { ssl::common::Team::Blue };
             let teleport = TeleportRobot {
@@ -95,8 +95,8 @@ impl Server {
                 present: Some(robot.turnon.unwrap_or(true)),
                 ..TeleportRobot::default()
             };
-            if let Err(refusal) = self.teleport_robot(&teleport, &mut unsaid) {
-                unsaid.push(refusal);
+            if let Err(refusal) = self.teleport_robot(&teleport, &mut refused) {
+                refused.push(refusal);
             }
         }
         if let Some(ball) = &replacement.ball {
@@ -111,9 +111,9 @@ impl Server {
                 vz: Some(0.0),
                 ..TeleportBall::default()
             };
-            self.teleport_ball(&teleport, &mut unsaid);
+            self.teleport_ball(&teleport, &mut refused);
         }
-        self.counts.refused += unsaid.len() as u64;
+        self.counts.refused += refused.len() as u64;
     }
 
     /// The robots of the team whose state differs from the last reported one.
@@ -121,7 +121,7 @@ impl Server {
         let now = self.world.now();
         let mut changed = Vec::new();
         for robot in self.world.robots().iter().filter(|robot| robot.who.colour == colour) {
-            let kicked = robot.kicked().filter(|(at, _)| now - at < KICK_SHOWS);
+            let kicked = robot.kicked().filter(|(at, _)| now - at < KICK_REPORTED_STEPS);
             let status = RobotStatus {
                 robot_id: i32::from(robot.who.id.number()),
                 infrared: robot.ball_contact,
@@ -129,8 +129,8 @@ impl Server {
                 chip_kick: kicked.is_some_and(|(_, chip)| chip),
             };
             let before = self.reported.insert(robot.who, status);
-            let untold = RobotStatus { robot_id: status.robot_id, ..RobotStatus::default() };
-            if before.unwrap_or(untold) != status {
+            let initial = RobotStatus { robot_id: status.robot_id, ..RobotStatus::default() };
+            if before.unwrap_or(initial) != status {
                 changed.push(status);
             }
         }
@@ -145,6 +145,6 @@ const fn colour_of(yellow: bool) -> Colour {
 /// Radius of the wheels of grSim's first robot, m; wheels are commanded by their angular rate there.
 const WHEEL_RADIUS: f32 = 0.027;
 /// Minimum speed of a kick, m/s.
-const KICK_LEAST: f32 = 0.0001;
+const KICK_SPEED_MIN: f32 = 0.0001;
 /// Steps for which a kick is reported: ten of grSim's at 60 Hz.
-const KICK_SHOWS: u64 = 167;
+const KICK_REPORTED_STEPS: u64 = 167;

@@ -78,7 +78,7 @@ pub enum Port {
 }
 
 impl Port {
-    /// Its UDP port number.
+    /// UDP port number.
     pub const fn number(self) -> u16 {
         match self {
             Self::Simulator => addresses::SIMULATOR_PORT,
@@ -92,7 +92,7 @@ impl Port {
 /// A datagram to be sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transmit {
-    /// Where the datagram is to be sent.
+    /// Destination of the datagram.
     pub to: Destination,
     /// Payload, a protobuf message.
     pub bytes: Vec<u8>,
@@ -159,7 +159,7 @@ pub struct Server {
 struct RadioRealism {
     command_loss: f32,
     answer_loss: f32,
-    /// Delay, steps.
+    /// Delay of commands, steps.
     delay: u64,
 }
 
@@ -172,8 +172,8 @@ impl Server {
             let Some(id) = RobotId::new(n) else { continue };
             // Columns of four, 0.4 m apart, starting a metre from the halfway line (or half way into a small
             // field).
-            let depth = (field.length * 0.25).min(1.0) + f32::from(n / 4) * SPACING;
-            let aside = (f32::from(n % 4) - 1.5) * SPACING;
+            let depth = (field.length * 0.25).min(1.0) + f32::from(n / 4) * LINE_UP_SPACING;
+            let aside = (f32::from(n % 4) - 1.5) * LINE_UP_SPACING;
             world.put(Who::blue(id), Pose::from_mm_deg(-depth * 1000.0, aside * 1000.0, 0.0));
             world.put(Who::yellow(id), Pose::from_mm_deg(depth * 1000.0, aside * 1000.0, 180.0));
         }
@@ -282,7 +282,7 @@ impl Server {
         let before = *self.last.get_or_insert(now);
         self.last = Some(now);
         self.owed += now.since(before).0 as f32 * self.pace;
-        let late = ((self.owed - CATCH_UP) / STEP_US).max(0.0) as u64;
+        let late = ((self.owed - CATCH_UP_US) / STEP_US).max(0.0) as u64;
         self.counts.skipped += late;
         self.owed -= late as f32 * STEP_US;
         while self.owed >= STEP_US {
@@ -305,7 +305,7 @@ impl Server {
         }
     }
 
-    /// When [`Server::advance`] has to be called next; `None` while the world stands still.
+    /// Time at which [`Server::advance`] has to be called next; `None` while the world stands still.
     pub fn poll_timeout(&self) -> Option<Instant> {
         let last = self.last.unwrap_or_default();
         (self.pace > 0.0).then(|| Instant(last.0 + ((STEP_US - self.owed) / self.pace).max(0.0) as u64 + 1))
@@ -349,7 +349,7 @@ impl Server {
         response.errors.extend(self.reported(&refused));
         response.feedback = self.feedback(colour, &commanded);
         SimulationSyncResponse {
-            detection: self.cameras.snapshot(&self.world),
+            detection: self.cameras.capture(&self.world),
             robot_control_response: Some(response),
         }
     }
@@ -370,14 +370,14 @@ impl Server {
 pub const SPEED_MAX: f32 = 1000.0;
 /// Maximum synchronous step, s.
 pub const SYNC_MAX: f32 = 10.0;
-/// Where simulators send vision by default, so as not to disturb a tournament's 10006.
+/// Default port of simulators' vision packets: not a tournament's 10006.
 pub const VISION_PORT: u16 = addresses::VISION_SIMULATED.port();
 /// µs in a step.
 const STEP_US: f32 = 1000.0;
 /// Simulated µs that are simulated at once after a pause of the caller; the remainder is skipped.
-const CATCH_UP: f32 = 250_000.0;
+const CATCH_UP_US: f32 = 250_000.0;
 /// Distance between robots at the start, m.
-const SPACING: f32 = 0.4;
+const LINE_UP_SPACING: f32 = 0.4;
 
 #[cfg(test)]
 mod tests;

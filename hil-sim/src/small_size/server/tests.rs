@@ -43,29 +43,49 @@ fn sent(server: &mut Server) -> (Vec<WrapperPacket>, Vec<Vec<u8>>) {
     (vision, answers)
 }
 
-/// The codes in the answer to a message to 10300.
-fn steer(server: &mut Server, command: &SimulatorCommand) -> Vec<String> {
+/// The codes in the answer to a message to the simulator's port; `None`: it is not answered.
+fn codes(server: &mut Server, command: &SimulatorCommand) -> Option<Vec<String>> {
     sent(server);
     server.handle(Port::Simulator, from(), &command.encode_to_vec());
-    let answer = sent(server).1.remove(0);
-    let answer = SimulatorResponse::decode(&answer[..]).unwrap();
-    answer.errors.iter().map(|error| error.code.clone().unwrap()).collect()
+    let answer = SimulatorResponse::decode(&sent(server).1.pop()?[..]).unwrap();
+    Some(answer.errors.into_iter().map(|error| error.code.unwrap()).collect())
 }
 
 fn control(server: &mut Server, control: SimulatorControl) -> Vec<String> {
-    steer(server, &SimulatorCommand { control: Some(control), config: None })
+    codes(server, &SimulatorCommand { control: Some(control), config: None }).unwrap()
+}
+
+fn teleport_ball(server: &mut Server, ball: TeleportBall) -> Vec<String> {
+    control(server, SimulatorControl { teleport_ball: Some(ball), ..Default::default() })
+}
+
+fn teleport_robot(server: &mut Server, robot: TeleportRobot) -> Vec<String> {
+    control(server, SimulatorControl { teleport_robot: vec![robot], ..Default::default() })
 }
 
 fn config(server: &mut Server, config: SimulatorConfig) -> Vec<String> {
-    steer(server, &SimulatorCommand { control: None, config: Some(config) })
+    codes(server, &SimulatorCommand { control: None, config: Some(config) }).unwrap()
 }
 
-fn lead(server: &mut Server, colour: Colour, commands: &[RobotCommand]) -> RobotControlResponse {
+/// The answers to a message to blue's port, datagram by datagram.
+fn answers(server: &mut Server, commands: &[RobotCommand]) -> Vec<RobotControlResponse> {
     sent(server);
     let control = RobotControl { robot_commands: commands.to_vec() };
-    server.handle(Port::Team(colour), from(), &control.encode_to_vec());
-    let answer = sent(server).1.remove(0);
-    RobotControlResponse::decode(&answer[..]).unwrap()
+    server.handle(Port::Team(Colour::Blue), from(), &control.encode_to_vec());
+    sent(server).1.iter().map(|bytes| RobotControlResponse::decode(&bytes[..]).unwrap()).collect()
+}
+
+/// The first of them.
+fn lead(server: &mut Server, commands: &[RobotCommand]) -> RobotControlResponse {
+    answers(server, commands).remove(0)
+}
+
+/// Blue's robot drives ahead on a command every 10 ms.
+fn drive(server: &mut Server, id: u32, speed: f32, commands: u32) {
+    for _ in 0..commands {
+        lead(server, &[ahead(id, speed)]);
+        steps(server, 10);
+    }
 }
 
 fn ahead(id: u32, speed: f32) -> RobotCommand {
@@ -89,11 +109,11 @@ fn steps(server: &mut Server, count: u32) {
 }
 
 #[test]
-fn a_commanded_robot_drives_and_the_answer_names_who_is_there() {
+fn a_commanded_robot_drives_and_the_answer_lists_the_robots_present() {
     let mut server = server();
     let before = server.world().robot(own(2)).unwrap().pose.position;
     for _ in 0..50 {
-        let answer = lead(&mut server, Colour::Blue, &[ahead(2, 1.0)]);
+        let answer = lead(&mut server, &[ahead(2, 1.0)]);
         assert!(answer.errors.is_empty());
         let ids: Vec<_> = answer.feedback.iter().map(|feedback| feedback.id).collect();
         assert_eq!(ids, [0, 1, 2, 3, 4, 5]);
@@ -106,23 +126,21 @@ fn a_commanded_robot_drives_and_the_answer_names_who_is_there() {
 }
 
 #[test]
-fn the_light_barrier_is_reported() {
+fn feedback_has_the_break_beam_sensor() {
     let mut server = server();
     let robot = server.world().robot(own(1)).unwrap();
     let (p, reach) = (robot.pose.position, robot.body.front + 0.0215);
     let ball = TeleportBall { x: Some(p.x() + reach + 0.001), y: Some(p.y()), ..TeleportBall::default() };
-    assert!(
-        control(&mut server, SimulatorControl { teleport_ball: Some(ball), ..Default::default() }).is_empty()
-    );
+    assert!(teleport_ball(&mut server, ball).is_empty());
     server.step();
-    let contacts: Vec<_> = (lead(&mut server, Colour::Blue, &[]).feedback.iter())
+    let contacts: Vec<_> = (lead(&mut server, &[]).feedback.iter())
         .map(|feedback| feedback.dribbler_ball_contact.unwrap())
         .collect();
     assert_eq!(contacts, [false, true, false, false, false, false]);
 }
 
 #[test]
-fn time_runs_at_its_pace_stands_still_and_skips_what_no_one_waited_for() {
+fn time_follows_the_pace_and_skips_more_than_250_ms_of_delay() {
     let mut server = server();
     let (sec, mut now) = (1_000_000, Instant(5_000_000));
     let run = |server: &mut Server, now: &mut Instant, us: u64| {
@@ -169,13 +187,13 @@ fn vision_goes_to_the_port_that_was_set() {
 }
 
 #[test]
-fn what_a_teleport_leaves_out_stays_as_it_is() {
+fn fields_missing_in_a_teleport_stay_unchanged() {
     let mut server = server();
     let ball =
         TeleportBall { x: Some(1.0), y: Some(0.5), vx: Some(2.0), vy: Some(-1.0), ..Default::default() };
-    control(&mut server, SimulatorControl { teleport_ball: Some(ball), ..Default::default() });
+    teleport_ball(&mut server, ball);
     let up = TeleportBall { z: Some(0.5), roll: Some(true), ..Default::default() };
-    control(&mut server, SimulatorControl { teleport_ball: Some(up), ..Default::default() });
+    teleport_ball(&mut server, up);
     let ball = server.world().ball;
     assert_eq!((ball.position.x(), ball.position.y(), ball.height), (1.0, 0.5, 0.5));
     assert_eq!((ball.velocity.x(), ball.velocity.y()), (2.0, -1.0));
@@ -183,25 +201,22 @@ fn what_a_teleport_leaves_out_stays_as_it_is() {
 
     let turn = TeleportRobot { id: blue(3), orientation: Some(1.0), ..Default::default() };
     let before = server.world().robot(own(3)).unwrap().pose;
-    control(&mut server, SimulatorControl { teleport_robot: vec![turn], ..Default::default() });
+    teleport_robot(&mut server, turn);
     let after = server.world().robot(own(3)).unwrap().pose;
     assert_eq!(after.position, before.position);
     assert_eq!(after.heading.radians(), 1.0);
 }
 
 #[test]
-fn robots_leave_come_and_are_pulled() {
+fn robots_are_removed_returned_and_pulled() {
     let mut server = server();
-    let teleport = |server: &mut Server, robot: TeleportRobot| {
-        control(server, SimulatorControl { teleport_robot: vec![robot], ..Default::default() })
-    };
     let gone = TeleportRobot { id: blue(0), present: Some(false), ..Default::default() };
-    assert!(teleport(&mut server, gone).is_empty());
-    let answer = lead(&mut server, Colour::Blue, &[ahead(0, 1.0)]);
+    assert!(teleport_robot(&mut server, gone).is_empty());
+    let answer = lead(&mut server, &[ahead(0, 1.0)]);
     assert_eq!(answer.errors[0].code.as_deref(), Some("ONETWO_UNKNOWN_ROBOT"));
     assert_eq!(answer.feedback.len(), 5, "who is not there answers nothing");
     let back = TeleportRobot { present: Some(true), x: Some(0.3), y: Some(0.2), v_x: Some(1.0), ..gone };
-    assert!(teleport(&mut server, back).is_empty());
+    assert!(teleport_robot(&mut server, back).is_empty());
     assert_eq!(server.world().robot(own(0)).unwrap().velocity.x(), 1.0);
     let new = TeleportRobot {
         id: blue(15),
@@ -210,7 +225,7 @@ fn robots_leave_come_and_are_pulled() {
         y: Some(2.0),
         ..Default::default()
     };
-    assert!(teleport(&mut server, new).is_empty());
+    assert!(teleport_robot(&mut server, new).is_empty());
     let pulled = TeleportRobot {
         id: blue(15),
         by_force: Some(true),
@@ -218,54 +233,42 @@ fn robots_leave_come_and_are_pulled() {
         y: Some(2.0),
         ..Default::default()
     };
-    assert!(teleport(&mut server, pulled).is_empty());
+    assert!(teleport_robot(&mut server, pulled).is_empty());
     steps(&mut server, 2_000);
     let place = |server: &Server| server.world().robot(own(15)).unwrap().pose.position;
     assert!((place(&server).x() + 3.0).abs() < 0.02, "one message is enough: {:?}", place(&server));
     // It stays pulled, whatever its orders are ...
-    for _ in 0..100 {
-        lead(&mut server, Colour::Blue, &[ahead(15, 1.0)]);
-        steps(&mut server, 10);
-    }
+    drive(&mut server, 15, 1.0, 100);
     assert!((place(&server).x() + 3.0).abs() < 0.02, "{:?}", place(&server));
     // ... until a message without force, which moves nothing.
     let before = place(&server);
-    assert!(teleport(&mut server, TeleportRobot { id: blue(15), ..Default::default() }).is_empty());
+    assert!(teleport_robot(&mut server, TeleportRobot { id: blue(15), ..Default::default() }).is_empty());
     assert_eq!(place(&server), before);
-    for _ in 0..100 {
-        lead(&mut server, Colour::Blue, &[ahead(15, 1.0)]);
-        steps(&mut server, 10);
-    }
+    drive(&mut server, 15, 1.0, 100);
     assert!(place(&server).x() > -2.7, "{:?}", place(&server));
 }
 
 #[test]
 fn a_ball_is_pulled_and_held_until_it_is_let_go() {
     let mut server = server();
-    let ball = |server: &mut Server, ball: TeleportBall| {
-        control(server, SimulatorControl { teleport_ball: Some(ball), ..Default::default() })
-    };
     let by_force = |x, y| TeleportBall { x, y, by_force: Some(true), ..Default::default() };
-    assert!(ball(&mut server, by_force(Some(0.0), Some(2.0))).is_empty());
+    assert!(teleport_ball(&mut server, by_force(Some(0.0), Some(2.0))).is_empty());
     steps(&mut server, 3_000);
     let place = |server: &Server| server.world().ball.position;
     assert!(place(&server).distance(Point::new(0.0, 2.0)) < 0.01, "{:?}", place(&server));
     // A robot that drives through it does not push it away.
     server.world_mut().put(own(0), geometry::Pose::from_mm_deg(-300.0, 2000.0, 0.0));
-    for _ in 0..200 {
-        lead(&mut server, Colour::Blue, &[ahead(0, 0.5)]);
-        steps(&mut server, 10);
-    }
+    drive(&mut server, 0, 0.5, 200);
     assert!(place(&server).distance(Point::new(0.0, 2.0)) < 0.15, "{:?}", place(&server));
     // One coordinate alone: the other keeps its requested value.
-    assert!(ball(&mut server, by_force(Some(1.0), None)).is_empty());
+    assert!(teleport_ball(&mut server, by_force(Some(1.0), None)).is_empty());
     steps(&mut server, 3_000);
     assert!(place(&server).distance(Point::new(1.0, 2.0)) < 0.15, "{:?}", place(&server));
     let before = server.world().ball;
-    assert!(ball(&mut server, TeleportBall::default()).is_empty());
+    assert!(teleport_ball(&mut server, TeleportBall::default()).is_empty());
     assert_eq!(server.world().ball, before, "nothing is moved by letting go");
     let kicked = TeleportBall { vx: Some(0.0), vy: Some(-2.0), ..Default::default() };
-    assert!(ball(&mut server, kicked).is_empty());
+    assert!(teleport_ball(&mut server, kicked).is_empty());
     steps(&mut server, 500);
     assert!(place(&server).y() < 1.5, "{:?}", place(&server));
 }
@@ -280,13 +283,13 @@ fn a_ball_put_down_safely_pushes_robots_aside() {
         teleport_safely: Some(on),
         ..Default::default()
     };
-    control(&mut server, SimulatorControl { teleport_ball: Some(safely(true)), ..Default::default() });
+    teleport_ball(&mut server, safely(true));
     let robot = server.world().robot(own(4)).unwrap().pose.position;
     assert!(robot.distance(server.world().ball.position) > 0.111, "{robot:?}");
 }
 
 #[test]
-fn specifications_change_a_robot_and_only_it() {
+fn a_specification_changes_only_its_robot() {
     let mut server = server();
     let limits = RobotLimits { vel_absolute_max: Some(0.5), ..Default::default() };
     let specs = RobotSpecs {
@@ -305,7 +308,7 @@ fn specifications_change_a_robot_and_only_it() {
 }
 
 #[test]
-fn another_field_is_reported_by_vision_and_holds_robots() {
+fn a_new_geometry_changes_the_field_and_the_vision_packets() {
     let mut server = server();
     let a = World::new(League::DivisionA, Parameters::of(League::DivisionA).unwrap(), 0);
     let reported = Cameras::of(Profile::Ours, 0.0, &a, 0).geometry(&a, None);
@@ -320,7 +323,7 @@ fn another_field_is_reported_by_vision_and_holds_robots() {
 }
 
 #[test]
-fn realism_as_er_force_names_it_changes_noise_delay_and_losses() {
+fn er_forces_realism_settings_change_noise_delay_and_loss() {
     let mut server = server();
     let asked = RealismConfigErForce {
         stddev_ball_p: Some(0.01),
@@ -338,16 +341,13 @@ fn realism_as_er_force_names_it_changes_noise_delay_and_losses() {
     assert_eq!((settings.noise.ball, settings.noise.robot), (0.01, 0.0));
     assert!((settings.camera.delay - 0.02).abs() < 1e-6);
     let before = server.world().robot(own(2)).unwrap().pose;
-    for _ in 0..20 {
-        lead(&mut server, Colour::Blue, &[ahead(2, 1.0)]);
-        steps(&mut server, 10);
-    }
+    drive(&mut server, 2, 1.0, 20);
     assert_eq!(server.world().robot(own(2)).unwrap().pose, before, "every command was lost");
     assert_eq!(server.counts().lost, 20);
 }
 
 #[test]
-fn in_synchronous_mode_time_is_what_was_asked_for() {
+fn in_synchronous_mode_time_advances_by_the_requested_step() {
     let mut server = server();
     let request = SimulationSyncRequest {
         sim_step: Some(0.02),
@@ -411,7 +411,7 @@ fn the_same_messages_give_the_same_bytes() {
 }
 
 #[test]
-fn whatever_bytes_come_it_answers_and_goes_on() {
+fn every_corrupted_datagram_gets_one_answer() {
     let mut server = server();
     let mut chance = Stream::new(4, "test");
     let seeds = [

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn at_eight_metres_a_second_and_any_phase_no_robot_is_tunnelled_through() {
+fn at_8_m_per_s_the_ball_tunnels_through_no_robot() {
     // Head-on and grazing, flat front and back, in steps of a tenth of a millimetre over one step's 8 mm.
     for (heading, offset) in
         [(180.0, 0.0), (0.0, 0.0), (90.0, 0.0), (180.0, 0.05), (0.0, 0.1), (45.0, -0.105)]
@@ -33,7 +33,7 @@ fn overlap(world: &World) -> f32 {
 }
 
 #[test]
-fn at_eight_metres_a_second_no_goal_wall_is_tunnelled_through() {
+fn at_8_m_per_s_the_ball_tunnels_through_no_goal_wall() {
     for phase in 0..80 {
         for y in [0.0, 0.3, -0.47] {
             let mut world = world();
@@ -60,7 +60,7 @@ fn a_post_sends_the_ball_back_into_the_field() {
 }
 
 #[test]
-fn a_ball_bounces_off_the_back_of_a_robot_with_the_hulls_share() {
+fn a_ball_bounces_off_a_robots_back_with_the_hulls_restitution() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(0.0, 0.0, 0.0));
     world.put_ball(Ball { velocity: Vector::new(2.0, 0.0), ..Ball::at(Point::new(-0.2, 0.0)) });
@@ -130,7 +130,7 @@ fn boards_hold_a_rolling_ball_and_a_flying_one_leaves() {
 }
 
 #[test]
-fn a_ball_between_two_robots_is_squeezed_and_no_one_explodes() {
+fn a_ball_squeezed_between_two_robots_stays_slow() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(-200.0, 0.0, 0.0));
     world.put(blue(1), Pose::from_mm_deg(200.0, 3.0, 180.0));
@@ -146,7 +146,7 @@ fn a_ball_between_two_robots_is_squeezed_and_no_one_explodes() {
 }
 
 #[test]
-fn the_simulator_can_make_room_for_a_ball_and_pull_it() {
+fn the_simulator_makes_room_for_a_ball_and_pulls_ball_and_robot() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(50.0, 0.0, 0.0));
     world.put_ball(Ball::at(Point::new(0.0, 0.0)));
@@ -168,7 +168,7 @@ fn the_simulator_can_make_room_for_a_ball_and_pull_it() {
 }
 
 #[test]
-fn the_fastest_ball_from_afar_meets_a_robot_whenever_the_world_last_looked_around() {
+fn the_fastest_ball_hits_a_robot_at_any_phase_of_the_neighbour_search() {
     for phase in 0..24 {
         let mut world = world();
         world.put(yellow(1), Pose::from_mm_deg(0.0, 0.0, 180.0)).push(Vector::new(-3.0, 0.0), 0.0);

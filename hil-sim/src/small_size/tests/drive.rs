@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn two_metres_from_rest_take_what_acceleration_and_top_speed_say() {
+fn two_metres_from_rest_take_the_time_of_acceleration_and_top_speed() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(-1000.0, 0.0, 0.0));
     let mut steps = 0;
@@ -17,7 +17,7 @@ fn two_metres_from_rest_take_what_acceleration_and_top_speed_say() {
 }
 
 #[test]
-fn from_three_metres_a_second_it_stops_within_what_brakes_and_motors_say() {
+fn the_braking_distance_is_that_of_the_configured_brake() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(0.0, 0.0, 0.0)).push(Vector::new(3.0, 0.0), 0.0);
     lead(&mut world, yellow(1), Order::default(), 1_000);
@@ -28,7 +28,7 @@ fn from_three_metres_a_second_it_stops_within_what_brakes_and_motors_say() {
 }
 
 #[test]
-fn to_the_side_it_is_slower_to_start() {
+fn a_robot_accelerates_less_to_the_side() {
     let length = |x, y| {
         let mut world = world();
         world.put(yellow(1), Pose::from_mm_deg(0.0, 0.0, 0.0));
@@ -66,7 +66,7 @@ fn rim_speeds_on_the_wires_order_drive_ahead() {
 }
 
 #[test]
-fn limits_hold_whatever_is_ordered() {
+fn speed_and_acceleration_limits_hold_for_every_order() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(-4000.0, -2000.0, 20.0));
     for step in 0..1_500 {
@@ -90,7 +90,7 @@ fn robot_is_at_a_board(world: &World) -> bool {
 }
 
 #[test]
-fn without_orders_for_a_tenth_of_a_second_it_brakes() {
+fn a_robot_brakes_after_100_ms_without_orders() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(0.0, 0.0, 0.0));
     lead(&mut world, yellow(1), local(1.0, 0.0, 0.0), 1_000);
@@ -102,7 +102,7 @@ fn without_orders_for_a_tenth_of_a_second_it_brakes() {
 }
 
 #[test]
-fn a_crash_is_reported_once_with_the_projected_difference_of_speeds() {
+fn a_crash_is_one_event_with_the_projected_closing_speed() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(-300.0, 0.0, 0.0)).push(Vector::new(2.0, 0.0), 0.0);
     world.put(blue(1), Pose::from_mm_deg(300.0, 90.0, 180.0)).push(Vector::new(-1.0, 0.0), 0.0);
@@ -137,7 +137,7 @@ fn two_free_robots_keep_their_momentum_in_a_collision() {
 }
 
 #[test]
-fn senses_are_wheels_and_gyroscope_and_know_no_place() {
+fn sensor_frames_have_odometry_and_health_but_no_position() {
     let mut parameters = exact();
     parameters.battery.energy = 1_000.0;
     let mut world = World::new(League::DivisionB, &parameters, 1);
@@ -162,7 +162,7 @@ fn senses_are_wheels_and_gyroscope_and_know_no_place() {
 }
 
 #[test]
-fn boards_and_goals_hold_robots() {
+fn boards_and_goal_walls_stop_robots() {
     let mut world = world();
     world.put(yellow(1), Pose::from_mm_deg(4400.0, 0.0, 0.0));
     lead(&mut world, yellow(1), local(2.0, 0.0, 0.0), 1_000);

@@ -34,28 +34,27 @@ impl World {
         let field = &self.pitch.field;
         let [x, y] = self.pitch.corner();
         let radius = self.parameters.robot.radius;
-        let inside = chance.chance(ON_FIELD);
-        for _ in 0..DRAWS {
+        let inside = chance.chance(ON_FIELD_SHARE);
+        for _ in 0..DRAWS_MAX {
             let place =
                 Point::new(chance.between(radius - x, x - radius), chance.between(radius - y, y - radius));
             let (ahead, aside) = (place.x().abs(), place.y().abs());
             let (to_goal, to_touch) = (field.length * 0.5 - ahead, field.width * 0.5 - aside);
             let edge = to_goal.min(to_touch);
             let right = if inside {
-                edge >= CLEAR_OF_LINES
-                    && place.distance(Point::default()) >= field.center_radius + CLEAR
-                    && (to_goal >= field.penalty_depth + CLEAR_OF_LINES
-                        || aside >= field.penalty_width * 0.5 + CLEAR_OF_LINES)
-                    && place.distance(Point::new(0.0, place.y())) >= CLEAR
+                edge >= LINE_CLEAR_DISTANCE
+                    && place.distance(Point::default()) >= field.center_radius + CLEAR_DISTANCE
+                    && (to_goal >= field.penalty_depth + LINE_CLEAR_DISTANCE
+                        || aside >= field.penalty_width * 0.5 + LINE_CLEAR_DISTANCE)
+                    && place.distance(Point::new(0.0, place.y())) >= CLEAR_DISTANCE
             } else {
                 // Beside the field, and not behind a goal.
-                edge <= -(radius + BESIDE) && aside >= field.goal_width * 0.5 + CLEAR
+                edge <= -(radius + LINE_GAP) && aside >= field.goal_width * 0.5 + CLEAR_DISTANCE
             };
-            let taken = self
-                .robots
-                .iter()
-                .any(|robot| robot.present && robot.pose.position.distance(place) < 2.0 * radius + APART);
-            if right && !taken && self.ball.position.distance(place) >= CLEAR {
+            let taken = self.robots.iter().any(|robot| {
+                robot.present && robot.pose.position.distance(place) < 2.0 * radius + BYSTANDERS_APART_MIN
+            });
+            if right && !taken && self.ball.position.distance(place) >= CLEAR_DISTANCE {
                 return Some(place);
             }
         }
@@ -64,16 +63,16 @@ impl World {
 }
 
 /// Share of those that stand on the field, not beside it; estimate.
-const ON_FIELD: f32 = 0.4;
+const ON_FIELD_SHARE: f32 = 0.4;
 /// Minimum distance to the lines and areas, m: the nearest positions where balls are placed are 0.2 m from
 /// them, and two robots fit between.
-const CLEAR_OF_LINES: f32 = 0.7;
+const LINE_CLEAR_DISTANCE: f32 = 0.7;
 /// Minimum distance to the ball, the circle and the goals, m: more than a robot's width, so that a robot that
 /// plays there can pass.
-const CLEAR: f32 = 0.3;
+const CLEAR_DISTANCE: f32 = 0.3;
 /// Distance between a bystander beside the field and the line, m.
-const BESIDE: f32 = 0.02;
+const LINE_GAP: f32 = 0.02;
 /// Minimum distance between bystanders and other robots, m: a robot fits through.
-const APART: f32 = 0.25;
+const BYSTANDERS_APART_MIN: f32 = 0.25;
 /// Maximum number of draws of a position; a field without room has none.
-const DRAWS: usize = 400;
+const DRAWS_MAX: usize = 400;

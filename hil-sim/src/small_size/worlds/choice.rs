@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 /// The choice of a world: `nominal`, a named profile, or `random:SEED`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -59,16 +60,16 @@ impl fmt::Display for WorldChoice {
 impl FromStr for WorldChoice {
     type Err = UnknownWorld;
 
-    fn from_str(label: &str) -> Result<Self, UnknownWorld> {
-        if label == NOMINAL {
+    fn from_str(name: &str) -> Result<Self, UnknownWorld> {
+        if name == NOMINAL {
             return Ok(Self::Nominal);
         }
-        if let Some(named) = NamedWorld::ALL.into_iter().find(|named| named.label() == label) {
+        if let Some(named) = NamedWorld::ALL.into_iter().find(|named| named.label() == name) {
             return Ok(Self::Named(named));
         }
-        let seed = label.strip_prefix(RANDOM).and_then(|rest| rest.strip_prefix(':'));
+        let seed = name.strip_prefix(RANDOM).and_then(|rest| rest.strip_prefix(':'));
         let seed = seed.and_then(|digits| digits.parse().ok());
-        seed.map(Self::Random).ok_or_else(|| UnknownWorld { label: label.to_owned(), plan: false })
+        seed.map(Self::Random).ok_or_else(|| UnknownWorld { name: name.to_owned(), plan: false })
     }
 }
 
@@ -116,18 +117,18 @@ impl fmt::Display for WorldPlan {
 impl FromStr for WorldPlan {
     type Err = UnknownWorld;
 
-    fn from_str(label: &str) -> Result<Self, UnknownWorld> {
-        if label == RANDOM {
+    fn from_str(name: &str) -> Result<Self, UnknownWorld> {
+        if name == RANDOM {
             return Ok(Self::RandomPerMatch);
         }
-        label.parse().map(Self::Same).map_err(|error| UnknownWorld { plan: true, ..error })
+        name.parse().map(Self::Same).map_err(|error| UnknownWorld { plan: true, ..error })
     }
 }
 
 impl TryFrom<String> for WorldChoice {
     type Error = UnknownWorld;
-    fn try_from(label: String) -> Result<Self, UnknownWorld> {
-        label.parse()
+    fn try_from(name: String) -> Result<Self, UnknownWorld> {
+        name.parse()
     }
 }
 
@@ -139,8 +140,8 @@ impl From<WorldChoice> for String {
 
 impl TryFrom<String> for WorldPlan {
     type Error = UnknownWorld;
-    fn try_from(label: String) -> Result<Self, UnknownWorld> {
-        label.parse()
+    fn try_from(name: String) -> Result<Self, UnknownWorld> {
+        name.parse()
     }
 }
 
@@ -151,28 +152,22 @@ impl From<WorldPlan> for String {
 }
 
 /// The text names no world.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("no world is named {name:?}; there are {}, and {} with a whole number", all_names(), seed_form(*.plan))]
 pub struct UnknownWorld {
     /// The name that was requested.
-    pub label: String,
-    /// Whether `random` alone would have been a name too.
+    pub name: String,
+    /// True where `random` alone would have been a name too.
     plan: bool,
 }
 
-impl fmt::Display for UnknownWorld {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<_> = WorldChoice::names().collect();
-        let random = if self.plan { "random (the seed of each match) or random:SEED" } else { "random:SEED" };
-        write!(
-            f,
-            "no world is named {:?}; there are {}, and {random} with a whole number",
-            self.label,
-            names.join(", ")
-        )
-    }
+fn all_names() -> String {
+    WorldChoice::names().collect::<Vec<_>>().join(", ")
 }
 
-impl std::error::Error for UnknownWorld {}
+const fn seed_form(plan: bool) -> &'static str {
+    if plan { "random (the seed of each match) or random:SEED" } else { "random:SEED" }
+}
 
 /// The league's own file.
 const NOMINAL: &str = "nominal";
@@ -198,13 +193,13 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_name_is_answered_with_all_that_there_are() {
-        for label in ["", "Nominal", "grsim ", "random", "random:", "random:-1", "random:1.5", "mars"] {
-            let error = label.parse::<WorldChoice>().unwrap_err().to_string();
+    fn the_error_of_an_unknown_name_lists_all_names() {
+        for name in ["", "Nominal", "grsim ", "random", "random:", "random:-1", "random:1.5", "mars"] {
+            let error = name.parse::<WorldChoice>().unwrap_err().to_string();
             for name in WorldChoice::names().chain(["random:SEED"]) {
                 assert!(error.contains(name), "{error}");
             }
-            assert!(error.contains(&format!("{label:?}")), "{error}");
+            assert!(error.contains(&format!("{name:?}")), "{error}");
         }
         let error = "mars".parse::<WorldPlan>().unwrap_err().to_string();
         assert!(error.contains("seed of each match"), "{error}");

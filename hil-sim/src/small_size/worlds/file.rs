@@ -8,11 +8,11 @@
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 use toml::{Table, Value};
 
 use super::{LinkModel, NamedWorld, RobotSpread, VisionModel, WorldModel};
-use crate::four_legged::parameters::ParameterError;
-use crate::four_legged::parameters::within;
+use crate::parameters::{ParameterError, within};
 use crate::small_size::Parameters;
 
 impl NamedWorld {
@@ -94,22 +94,15 @@ impl WorldModel {
     }
 }
 
-/// Why a profile cannot be used.
-#[derive(Clone, Debug, PartialEq)]
+/// Error of a profile, with the file that has it.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("world {file}: {error}")]
 pub struct WorldError {
     /// Name of the file.
     pub file: String,
-    /// The error in it.
+    /// Error in the file.
     pub error: ParameterError,
 }
-
-impl fmt::Display for WorldError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "world {}: {}", self.file, self.error)
-    }
-}
-
-impl std::error::Error for WorldError {}
 
 #[cfg(test)]
 mod tests {
@@ -153,17 +146,17 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_file_is_the_league() {
+    fn an_empty_profile_is_the_leagues_world() {
         let nominal = WorldModel::of(League::DivisionB, &WorldChoice::Nominal).unwrap();
         assert_eq!(read("").unwrap(), WorldModel { name: "a-world".into(), ..nominal });
     }
 
     #[test]
     fn errors_name_file_key_and_bound() {
-        let refuse = |text: &str, description: &[&str]| {
+        let refuse = |text: &str, parts: &[&str]| {
             let error = read(text).unwrap_err().to_string();
-            for label in description.iter().chain(&["a-world"]) {
-                assert!(error.contains(label), "{text}: {error}");
+            for part in parts.iter().chain(&["a-world"]) {
+                assert!(error.contains(part), "{text}: {error}");
             }
         };
         refuse("[ball]\nroll = -0.1", &["ball.roll", "-0.1", "0.0001", "10"]);

@@ -12,7 +12,7 @@ use crate::small_size::Parameters;
 /// A world of the family: physics, differences between robots, command link, vision, bystanders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorldModel {
-    /// Its name, as [`WorldChoice`] writes it.
+    /// Name, as [`WorldChoice`] writes it.
     pub name: String,
     /// Ball, field, robots, cameras.
     pub parameters: Parameters,
@@ -26,27 +26,33 @@ pub struct WorldModel {
     pub bystanders: u8,
 }
 
-/// Differences between robots: each draws its own number, uniformly from the first to the second, once per
-/// world.
+/// Differences of robots from the world's parameters, as shares of them.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RobotSpread {
+#[serde(deny_unknown_fields, default, bound(deserialize = "Differences<T>: Default, T: Deserialize<'de>"))]
+pub struct Differences<T> {
     /// Share of the ordered speed with which a kick, flat or chip, leaves.
-    pub kick_gain: [f32; 2],
+    pub kick_gain: T,
     /// Share of that with which a chip leaves.
-    pub chip_ratio: [f32; 2],
+    pub chip_ratio: T,
     /// Share of the world's accelerations, brakes included.
-    pub acceleration: [f32; 2],
+    pub acceleration: T,
     /// Share of the world's speeds.
-    pub speed: [f32; 2],
+    pub speed: T,
     /// Share of the world's dribbler pull.
-    pub pull: [f32; 2],
+    pub pull: T,
     /// Share of the wheels' motion that does not reach the field surface.
-    pub slip: [f32; 2],
+    pub slip: T,
 }
 
+/// Differences between robots: each draws its own number, uniformly from the first to the second, once per
+/// world.
+pub type RobotSpread = Differences<[f32; 2]>;
+
+/// Differences of one robot from the nominal one.
+pub type Traits = Differences<f32>;
+
 /// Delay of orders to the wheels, and loss of packets.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LinkModel {
     /// Latency from a robot's computer to its wheels, kicker and dribbler, ms; whole.
@@ -58,7 +64,7 @@ pub struct LinkModel {
 }
 
 /// Faults of frames between the cameras and the host, besides rate, delay and noise of [`Parameters`].
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct VisionModel {
     /// Delay in addition to the cameras', ms, drawn for each frame uniformly from 0 to this; frames keep
@@ -136,23 +142,6 @@ impl VisionModel {
         Self { jitter_ms: 0, gap_every_s: 0.0, gap_ms: [0; 2], swap_every_s: 0.0, swap_frames: [0; 2] };
 }
 
-/// Differences of one robot from the nominal one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Traits {
-    /// Share of the ordered speed with which a kick leaves.
-    pub kick_gain: f32,
-    /// Share of that with which a chip leaves.
-    pub chip_ratio: f32,
-    /// Share of the world's accelerations.
-    pub acceleration: f32,
-    /// Share of the world's speeds.
-    pub speed: f32,
-    /// Share of the world's dribbler pull.
-    pub pull: f32,
-    /// Share of the wheels' motion that does not reach the field surface.
-    pub slip: f32,
-}
-
 impl Traits {
     /// No difference from the world's parameters.
     pub const NONE: Self =
@@ -165,9 +154,8 @@ impl RobotSpread {
         if *self == Self::NONE {
             return Traits::NONE;
         }
-        let draw = |name: &str, [low, high]: [f32; 2]| {
-            Stream::new(seed, &format!("robot {name} {}", who.slot())).between(low, high)
-        };
+        let stream = |name| Stream::new(seed, &format!("robot {name} {}", who.slot()));
+        let draw = |name, [low, high]: [f32; 2]| stream(name).between(low, high);
         Traits {
             kick_gain: draw("kick_gain", self.kick_gain),
             chip_ratio: draw("chip_ratio", self.chip_ratio),
@@ -182,17 +170,5 @@ impl RobotSpread {
 impl Default for RobotSpread {
     fn default() -> Self {
         Self::NONE
-    }
-}
-
-impl Default for LinkModel {
-    fn default() -> Self {
-        Self::IDEAL
-    }
-}
-
-impl Default for VisionModel {
-    fn default() -> Self {
-        Self::IDEAL
     }
 }

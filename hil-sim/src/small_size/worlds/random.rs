@@ -10,7 +10,7 @@ use crate::rng::Stream;
 use crate::small_size::Parameters;
 
 crate::labels! {
-    /// How a quantity is distributed between its bounds.
+    /// Distribution of a quantity between its bounds.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Law {
         /// Evenly between the bounds.
@@ -26,7 +26,7 @@ crate::labels! {
 
 /// A quantity of the family.
 pub struct Quantity {
-    /// Its key in a profile.
+    /// Key in a profile.
     pub name: &'static str,
     /// Minimum and maximum, in the key's unit.
     pub bounds: [f32; 2],

@@ -4,17 +4,14 @@ mod family;
 mod robots;
 mod vision;
 
-use geometry::{Point, Pose, Twist, Vector};
+use geometry::{Point, Pose, Vector};
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::{RobotId, Who};
 use rules::League;
 
 use super::*;
-use crate::small_size::{Ball, Drive, KickCommand, NoiseParameters, Order, PhysicsEvent, World};
-
-fn yellow(id: u8) -> Who {
-    Who::yellow(RobotId::new(id).unwrap())
-}
+use crate::small_size::tests::{dribble, dribbler_point, has_ball, local, yellow};
+use crate::small_size::{Ball, KickCommand, NoiseParameters, Order, PhysicsEvent, World};
 
 /// Division B without randomness, changed.
 fn model(change: impl FnOnce(&mut WorldModel)) -> WorldModel {
@@ -31,31 +28,13 @@ fn with_ball(change: impl FnOnce(&mut WorldModel)) -> World {
     let model = model(change);
     let mut world = World::of_model(League::DivisionB, &model, 1);
     world.put(yellow(1), Pose::from_mm_deg(0.0, 0.0, 0.0));
-    let (body, radius) = (model.parameters.robot, model.parameters.ball.radius);
-    world.put_ball(Ball::at(Point::new(body.front + radius + 0.0001, 0.0)));
+    world.put_ball(Ball::at(dribbler_point(&world, Pose::default())));
     world
 }
 
-fn local(x: f32, y: f32, turn: f32) -> Order {
-    let drive = Drive::Local(Twist { linear: Vector::new(x, y), angular: turn });
-    Order { drive, ..Order::default() }
-}
-
-fn dribbling(order: Order) -> Order {
-    Order { dribbler: 1.0, ..order }
-}
-
-/// Runs with the order repeated every 10 ms, as a brain does.
+/// Leads yellow's robot 1.
 fn lead(world: &mut World, order: Order, steps: u32) -> Vec<PhysicsEvent> {
-    let mut events = Vec::new();
-    for step in 0..steps {
-        if step % 10 == 0 {
-            world.order(yellow(1), order);
-        }
-        world.step();
-        world.take_events(&mut events);
-    }
-    events
+    crate::small_size::tests::lead(world, yellow(1), order, steps)
 }
 
 /// The robot accelerates uniformly to that velocity of its own frame, its dribbler turning.
@@ -64,21 +43,15 @@ fn pull(world: &mut World, to: [f32; 2], acceleration: f32) {
     let ticks = (most / acceleration * 100.0) as u32;
     for tick in 1..=ticks {
         let share = tick as f32 / ticks as f32;
-        lead(world, dribbling(local(to[0] * share, to[1] * share, 0.0)), 10);
+        lead(world, dribble(local(to[0] * share, to[1] * share, 0.0)), 10);
     }
-}
-
-fn has_ball(world: &World) -> bool {
-    world.robot(yellow(1)).unwrap().ball_contact
 }
 
 /// The speeds with which that robot's kicks leave.
 fn kick_of(world: &mut World, who: Who, speed: f32, angle: f32) -> f32 {
     let order = Order { kick: Some(KickCommand { speed, angle }), ..Order::default() };
     let pose = world.robot(who).unwrap().pose;
-    let of = world.parameters();
-    let front = of.robot.front + of.ball.radius + 0.0001;
-    world.put_ball(Ball::at(pose.to_field(Point::new(front, 0.0))));
+    world.put_ball(Ball::at(dribbler_point(world, pose)));
     let mut events = Vec::new();
     for _ in 0..1_100 {
         world.order(who, order);
@@ -97,7 +70,7 @@ fn wheels(rims: [f32; 4]) -> ActuatorFrame {
 }
 
 #[test]
-fn a_dribbler_of_half_a_metre_a_second_squared_loses_a_ball_pulled_at_three_and_one_of_six_keeps_it() {
+fn a_dribbler_keeps_the_ball_up_to_the_acceleration_of_its_pull() {
     for (pull_of, kept) in [(0.5, false), (2.0, false), (6.0, true)] {
         let mut world = with_ball(|model| model.parameters.dribbler.pull = pull_of);
         pull(&mut world, [-1.5, 0.0], 3.0);
@@ -106,7 +79,7 @@ fn a_dribbler_of_half_a_metre_a_second_squared_loses_a_ball_pulled_at_three_and_
 }
 
 #[test]
-fn a_weak_roller_keeps_a_ball_that_is_pulled_gently() {
+fn a_weak_dribbler_keeps_a_ball_at_low_acceleration() {
     let mut world = with_ball(|model| model.parameters.dribbler.pull = 1.0);
     // The field surface takes 0.35 of it, and each hop off the front removes the ball's roll.
     pull(&mut world, [-0.4, 0.0], 0.4);
@@ -114,13 +87,13 @@ fn a_weak_roller_keeps_a_ball_that_is_pulled_gently() {
 }
 
 #[test]
-fn a_roller_that_fades_keeps_a_slow_ball_and_loses_a_fast_one() {
+fn a_fading_dribbler_keeps_a_slow_ball_and_loses_a_fast_one() {
     let fading = |speed: f32| {
         let mut world = with_ball(|model| {
             (model.parameters.dribbler.pull, model.parameters.dribbler.fade) = (3.0, 0.4);
         });
         pull(&mut world, [-speed, 0.0], 0.5);
-        lead(&mut world, dribbling(local(-speed, 0.0, 0.0)), 300);
+        lead(&mut world, dribble(local(-speed, 0.0, 0.0)), 300);
         has_ball(&world)
     };
     // At 2.2 m/s 3 · (1 − 0.88) = 0.36 m/s² are left, of which the field surface takes 0.35: half a m/s² more
@@ -129,7 +102,7 @@ fn a_roller_that_fades_keeps_a_slow_ball_and_loses_a_fast_one() {
 }
 
 #[test]
-fn no_dribbler_pulls_nothing() {
+fn a_robot_without_dribbler_leaves_the_ball_behind() {
     let mut world = with_ball(|model| {
         (model.parameters.dribbler.pull, model.parameters.dribbler.side) = (0.0, 0.0);
     });
@@ -138,7 +111,7 @@ fn no_dribbler_pulls_nothing() {
 }
 
 #[test]
-fn a_perfect_dribbler_loses_nothing_at_full_grip_in_any_direction_and_turning() {
+fn a_perfect_dribbler_keeps_the_ball_in_every_motion() {
     let perfect = |model: &mut WorldModel| {
         (model.parameters.dribbler.pull, model.parameters.dribbler.side) = (PERFECT_PULL, PERFECT_PULL);
         (model.parameters.drive.forward, model.parameters.drive.side) = (7.0, 7.0);
@@ -146,9 +119,9 @@ fn a_perfect_dribbler_loses_nothing_at_full_grip_in_any_direction_and_turning() 
     };
     for twist in [local(-2.5, 0.0, 0.0), local(2.5, 0.0, 0.0), local(0.0, 2.0, 0.0), local(0.0, 0.0, 12.0)] {
         let mut world = with_ball(perfect);
-        lead(&mut world, dribbling(twist), 500);
+        lead(&mut world, dribble(twist), 500);
         assert!(has_ball(&world), "{twist:?}: {:?}", world.ball);
-        lead(&mut world, dribbling(local(0.0, 0.0, 0.0)), 500);
+        lead(&mut world, dribble(local(0.0, 0.0, 0.0)), 500);
         assert!(has_ball(&world), "{twist:?}, braking: {:?}", world.ball);
         let gap = world.robot(yellow(1)).unwrap().pose.to_body(world.ball.position).x() - 0.0945;
         assert!(gap.abs() < 0.002, "{gap}");
@@ -156,7 +129,7 @@ fn a_perfect_dribbler_loses_nothing_at_full_grip_in_any_direction_and_turning() 
 }
 
 #[test]
-fn a_roller_holds_as_far_aside_as_it_is_wide() {
+fn a_dribbler_holds_the_ball_within_its_width() {
     for (mouth, kept) in [(0.025, false), (0.040, true)] {
         let mut world = with_ball(|model| {
             (model.parameters.robot.mouth, model.parameters.dribbler.center) = (mouth, 0.0);
@@ -168,7 +141,7 @@ fn a_roller_holds_as_far_aside_as_it_is_wide() {
 }
 
 #[test]
-fn the_front_gives_back_its_share_of_a_ball_and_the_turning_roller_its_own() {
+fn front_and_turning_dribbler_have_restitutions_of_their_own() {
     let comes_back = |dribbler: f32| {
         let mut world = with_ball(|model| {
             (model.parameters.bounce.front, model.parameters.bounce.dribbling) = (0.6, 0.2);
@@ -189,8 +162,7 @@ fn the_front_gives_back_its_share_of_a_ball_and_the_turning_roller_its_own() {
 }
 
 #[test]
-fn a_ball_rolls_as_far_as_its_friction_says_and_a_kick_slides_to_five_sevenths_at_once_where_the_surface_grips()
- {
+fn rolling_distance_and_end_of_sliding_follow_the_friction_parameters() {
     let mut world = with_ball(|model| model.parameters.ball.roll = 0.8);
     world.put_ball(Ball::rolling(Point::new(1.0, 1.0), Vector::new(1.0, 0.0)));
     (0..2_000).for_each(|_| world.step());

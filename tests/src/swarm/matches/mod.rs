@@ -68,8 +68,8 @@ fn must(must: Must) -> &'static str {
 
 /// The phase without its team.
 fn bare(phase: Phase<Colour>) -> String {
-    let description = format!("{phase:?}");
-    description.split('(').next().unwrap_or_default().to_owned()
+    let name = format!("{phase:?}");
+    name.split('(').next().unwrap_or_default().to_owned()
 }
 
 /// A violated property, with time and phase.
@@ -108,7 +108,7 @@ impl fmt::Display for Found {
             Broken::MovedInHalt(who, speed) => write!(f, "{} moves at {speed:.2} m/s", name(who)),
             Broken::FastInStop(who, speed) => write!(f, "{} goes {speed:.2} m/s", name(who)),
             Broken::Blocked(obstacle) => write!(f, "the match stands: {obstacle}"),
-            Broken::Ended(description) => f.write_str(description),
+            Broken::Ended(error) => f.write_str(error),
         }
     }
 }
@@ -165,7 +165,7 @@ impl Sum {
 }
 
 /// The lines that report a match with violations; the last one repeats it.
-pub fn description(plan: &Plan, outcome: &Outcome) -> String {
+pub fn report(plan: &Plan, outcome: &Outcome) -> String {
     let mut lines = String::new();
     for found in &outcome.found {
         let _ = writeln!(lines, "seed {}: {found}", plan.seed);

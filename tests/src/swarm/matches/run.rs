@@ -70,8 +70,8 @@ pub fn play(plan: &Plan, watcher: &mut dyn Watcher) -> Outcome {
     watch.end(&game)
 }
 
-fn ended(description: String) -> Outcome {
-    let found = Found { ms: 0, phase: Phase::Halt, broken: Broken::Ended(description) };
+fn ended(error: String) -> Outcome {
+    let found = Found { ms: 0, phase: Phase::Halt, broken: Broken::Ended(error) };
     Outcome { found: vec![found], ..Outcome::default() }
 }
 
@@ -229,8 +229,8 @@ impl Watch {
             })
             .collect();
         for frozen in self.stands.look(time, &must) {
-            let description = wanted(game, own, frozen.who);
-            self.find(time, Broken::Frozen(frozen, description));
+            let order = order_text(game, own, frozen.who);
+            self.find(time, Broken::Frozen(frozen, order));
         }
         self.look_at_blocks(time, game);
     }
@@ -336,10 +336,10 @@ impl Watch {
 }
 
 /// The order of a robot's host, and the robot nearest to it.
-fn wanted(game: &Game<'_>, own: [GoalEnd; 2], who: Who) -> String {
+fn order_text(game: &Game<'_>, own: [GoalEnd; 2], who: Who) -> String {
     let order = game.host(who.colour).orders().iter().find(|order| order.robot == who.id);
     let flip = Flip::defending(own[who.colour as usize]);
-    let mut description = order.map_or_else(
+    let mut text = order.map_or_else(
         || "no order".to_owned(),
         |order| format!("{:?} {:?}", order.role, order.task.directive(flip)),
     );
@@ -347,9 +347,9 @@ fn wanted(game: &Game<'_>, own: [GoalEnd; 2], who: Who) -> String {
     let others = game.world().robots().iter().filter(|robot| robot.present && robot.who != who);
     let near = others.filter_map(|robot| Some((robot.who, robot.pose.position.distance(at(who)?))));
     if let Some((next, distance)) = near.min_by(|a, b| a.1.total_cmp(&b.1)) {
-        let _ = write!(description, "; {} {} is {distance:.2} m away", next.colour.label(), next.id);
+        let _ = write!(text, "; {} {} is {distance:.2} m away", next.colour.label(), next.id);
     }
-    description
+    text
 }
 
 const fn first() -> protocol::RobotId {

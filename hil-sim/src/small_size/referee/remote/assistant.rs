@@ -53,7 +53,7 @@ pub struct Deed {
 #[derive(Clone, Debug, Default)]
 pub struct Assistant {
     commands: u64,
-    /// What is wrong with the ball, and since when.
+    /// Reason for placing the ball, and since when it holds.
     ball: Option<(AssistantReason, Instant)>,
     /// Number of manual placements since the last command, and the time of the last.
     puts: u32,
@@ -70,7 +70,7 @@ struct Team {
     changed: Option<Instant>,
     /// Robots taken off, in this order.
     off: Vec<Who>,
-    /// Whether a robot was taken off in this substitution.
+    /// True once a robot was taken off in this substitution.
     substituted: bool,
 }
 
@@ -101,12 +101,11 @@ impl Assistant {
         let since = self.ball.filter(|(before, _)| *before == why).map_or(now, |(_, since)| since);
         self.ball = Some((why, since));
         let waited = now.since(self.put_at.map_or(since, |put| put.max(since)));
-        let delay = if why == AssistantReason::NothingHappens { PATIENCE } else { PERSON_DELAY };
-        let stands = |robot: &Robot| {
-            robot.present && robot.pose.position.distance(target) < limits::ROBOT_RADIUS + ROOM
-        };
-        let room = !world.robots().iter().any(stands);
-        if waited < delay || !room && waited < delay + PATIENCE || self.puts >= PUTS_MAX {
+        let delay = if why == AssistantReason::NothingHappens { CONTROLLER_PATIENCE } else { PERSON_DELAY };
+        let near = limits::ROBOT_RADIUS + PLACEMENT_ROOM;
+        let mut present = world.robots().iter().filter(|robot| robot.present);
+        let room = present.all(|robot| robot.pose.position.distance(target) >= near);
+        if waited < delay || !room && waited < delay + CONTROLLER_PATIENCE || self.puts >= PUTS_MAX {
             return None;
         }
         self.puts += 1;
@@ -143,7 +142,7 @@ impl Team {
             let p = robot.pose.position;
             (behind(robot) || places::beside_halfway_line(field, p))
                 && p.distance(ball) >= limits::SUBSTITUTION_BALL_DISTANCE
-                && robot.velocity.norm() <= STANDING
+                && robot.velocity.norm() <= STANDING_SPEED_MAX
         };
         let left = ours().filter(may_be_taken).max_by_key(|robot| (behind(robot), robot.who));
         let crowded_for = self.crowded.map_or(Duration(0), |since| now.since(since));
@@ -207,7 +206,7 @@ fn wanted(game: &RemoteMatch, world: &World) -> Option<(AssistantReason, Point<F
     let lies = |tolerance: f32| still && ball.distance(target) <= tolerance;
     match game.next() {
         Some(next) if next.is_set_by_hand() => {
-            (!lies(SET_BY_HAND)).then_some((AssistantReason::SetByHand(next), target))
+            (!lies(MARK_TOLERANCE)).then_some((AssistantReason::SetByHand(next), target))
         }
         _ if !stopped || placement_needless(&game.field, ball, speed, target) => None,
         _ if game.has_event(GameEventType::PlacementSucceeded) && lies(limits::PLACEMENT_TOLERANCE) => None,
@@ -233,10 +232,9 @@ fn whom_to_take<'a>(
 
 impl fmt::Display for AssistantReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let team = |team: Colour| if team == Colour::Blue { "blue" } else { "yellow" };
         match self {
-            Self::SetByHand(Restart::Penalty(by)) => write!(f, "for {}'s penalty", team(*by)),
-            Self::SetByHand(Restart::Kickoff(by)) => write!(f, "for {}'s kick-off", team(*by)),
+            Self::SetByHand(Restart::Penalty(by)) => write!(f, "for {}'s penalty", by.label()),
+            Self::SetByHand(Restart::Kickoff(by)) => write!(f, "for {}'s kick-off", by.label()),
             Self::SetByHand(_) => write!(f, "for the restart"),
             Self::NoTeamPlaces => write!(f, "no team may place it, or both have failed"),
             Self::OutOfReach => write!(f, "it was where no robot can reach it"),
@@ -255,10 +253,7 @@ impl fmt::Display for AssistantReason {
 
 impl fmt::Display for Deed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = |who: Who| {
-            let team = if who.colour == Colour::Blue { "blue" } else { "yellow" };
-            format!("{team} {}", who.id.number())
-        };
+        let name = |who: Who| format!("{} {}", who.colour.label(), who.id.number());
         match self.order {
             WorldOrder::PutBall(at) => write!(f, "puts the ball at ({:.2}, {:.2}) m", at.x(), at.y())?,
             WorldOrder::RemoveRobot(who) => write!(f, "takes {} off", name(who))?,
@@ -279,14 +274,14 @@ impl fmt::Display for Deed {
 const PERSON_DELAY: Duration = Duration::millis(2_000);
 /// Further wait for robots to make room, and for a game that does not continue by itself: the controller's
 /// time for preparation.
-const PATIENCE: Duration = Duration::millis(10_000);
+const CONTROLLER_PATIENCE: Duration = Duration::millis(10_000);
 /// Time for taking off or returning a robot: the controller's tolerance in counting robots.
 const CHANGE_TIME: Duration = Duration::millis(2_000);
 /// Minimum distance from a robot's side, m, for placing the ball by hand: a hand's breadth.
-const ROOM: f32 = 0.1;
+const PLACEMENT_ROOM: f32 = 0.1;
 /// Maximum distance of a ball placed by hand from its mark, m: a third of what the controller tolerates.
-const SET_BY_HAND: f32 = 0.05;
+const MARK_TOLERANCE: f32 = 0.05;
 /// Maximum number of manual placements after one command; more would hide another fault.
 const PUTS_MAX: u32 = 5;
 /// Speed below which a robot is ready to be taken off, m/s: it may still turn, or be pushed a little.
-const STANDING: f32 = 0.2;
+const STANDING_SPEED_MAX: f32 = 0.2;

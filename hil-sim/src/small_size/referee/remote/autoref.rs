@@ -18,8 +18,8 @@ use super::super::watch::Watch;
 use super::RemoteMatch;
 use crate::small_size::{PhysicsEvent as WorldEvent, World};
 
-/// Who takes the decisions that automatic referees leave open: whether a ball in the goal is a goal, and how
-/// play continues after a ball left the field that no robot touched.
+/// Party that takes the decisions which automatic referees leave open: whether a ball in the goal is a goal,
+/// and how play continues after a ball left the field that no robot touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decider {
     /// The operator of the controller: POSSIBLE_GOAL is reported, and the controller halts the game for the
@@ -38,7 +38,7 @@ pub struct AutoReferee {
     commands: u64,
     /// Time at which an event that stops the game was reported, while the controller has not reacted.
     stopping: Option<Instant>,
-    /// Whether a success of this placement was reported.
+    /// True once the success of this placement was reported.
     placed: bool,
     /// The last foul of each team that did not stop the game, in the order of [`COLOURS`].
     fouls: [Option<(Kind, Instant)>; 2],
@@ -66,7 +66,7 @@ impl AutoReferee {
             self.stopping = None;
             self.placed = false;
         }
-        if self.stopping.is_some_and(|at| now.since(at) > DECISION) {
+        if self.stopping.is_some_and(|at| now.since(at) > DECISION_TIME) {
             self.stopping = None;
         }
         let view = game.view();
@@ -183,7 +183,7 @@ impl AutoReferee {
     }
 }
 
-/// Whether the controller finds this event by itself.
+/// True for an event that the controller finds by itself.
 fn is_the_controllers(what: &What) -> bool {
     matches!(
         what,
@@ -195,7 +195,7 @@ fn is_the_controllers(what: &What) -> bool {
     )
 }
 
-/// Whether the event belongs to the phase: events of play to play, those of placements to placements.
+/// True for an event that belongs to the phase: events of play to play, those of placements to placements.
 fn is_in_time(kind: Kind, phase: Phase<Colour>) -> bool {
     match kind {
         Kind::PlacementSucceeded => matches!(phase, Phase::BallPlacement(_)),
@@ -208,4 +208,4 @@ fn is_in_time(kind: Kind, phase: Phase<Colour>) -> bool {
 
 /// Time after which the controller has decided about a report: it waits 1 s for other automatic referees;
 /// twice that plus network delays.
-const DECISION: Duration = Duration::millis(2_500);
+const DECISION_TIME: Duration = Duration::millis(2_500);

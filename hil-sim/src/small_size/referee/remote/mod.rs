@@ -48,14 +48,7 @@ impl RemoteMatch {
     /// Before the first packet. Not for the four-legged league.
     pub fn new(league: League) -> Result<Self, NoRules> {
         let limits = league.limits().ok_or(NoRules(league))?;
-        let account = || {
-            Account::new(&TeamSettings {
-                name: String::new(),
-                keeper: KEEPER,
-                can_place_ball: true,
-                drives: true,
-            })
-        };
+        let account = Account::new(&TeamSettings::new(""));
         Ok(Self {
             field: league.field(),
             limits,
@@ -65,7 +58,7 @@ impl RemoteMatch {
             newest: None,
             received: Instant(0),
             now: Instant(0),
-            accounts: Accounts { yellow: account(), blue: account() },
+            accounts: Accounts { yellow: account.clone(), blue: account },
             ball_at_command: Point::default(),
             commands: 0,
         })
@@ -128,7 +121,7 @@ impl RemoteMatch {
         self.stage
     }
 
-    /// Whether nothing was received for [`SILENCE`], or ever.
+    /// True where nothing was received for [`SILENCE`], or ever.
     pub fn is_silent(&self, now: Instant) -> bool {
         self.newest.is_none() || now.since(self.received) > SILENCE
     }
@@ -188,23 +181,26 @@ impl RemoteMatch {
         self.team(team)?.max_allowed_bots
     }
 
-    /// Whether that team may exchange a robot now: the match is halted for it.
+    /// True for a team that may exchange a robot now: the match is halted for it.
     pub fn substitutes(&self, team: Colour) -> bool {
         self.team(team).and_then(|info| info.bot_substitution_allowed).unwrap_or(false)
     }
 
     /// The team that the controller would let place the ball now; `None`: placed by hand.
     fn placing_team(&self) -> Option<Colour> {
-        let may = |team: &Colour| {
-            let Some(info) = self.team(*team) else { return false };
-            info.can_place_ball.unwrap_or(true) && !info.ball_placement_failures_reached.unwrap_or(false)
-        };
+        let may = |team: &Colour| self.may_place(*team);
         let mut failed = self.failed_placements();
         match (failed.next(), failed.next()) {
             (None, _) => COLOURS.into_iter().find(may),
             (Some(team), None) => team.map(Colour::other).filter(may),
             (Some(_), Some(_)) => None,
         }
+    }
+
+    fn may_place(&self, team: Colour) -> bool {
+        self.team(team).is_some_and(|info| {
+            info.can_place_ball.unwrap_or(true) && !info.ball_placement_failures_reached.unwrap_or(false)
+        })
     }
 
     /// The teams whose placement failed in this stoppage, one item each.
@@ -268,8 +264,3 @@ fn command_of(number: i32) -> Option<RefereeCommand> {
 
 /// Silence after which a controller is not followed any more: it sends every 25 ms.
 pub const SILENCE: Duration = Duration::millis(3_000);
-/// The keeper's shell number until the controller sends one.
-const KEEPER: RobotId = match RobotId::new(0) {
-    Some(id) => id,
-    None => unreachable!(),
-};

@@ -10,8 +10,9 @@ pub(super) fn beside_halfway_line(field: &FieldSpec, place: Point<Field>) -> boo
     place.x().abs() <= limits::SUBSTITUTION_REACH && place.y().abs() > field.width * 0.5
 }
 
-/// Where a robot of the team that owns `own` is returned: beside the touch line of its half, near the halfway
-/// line, where no robot stands and the ball is far enough away. `None` while there is no such position.
+/// Pose at which a robot of the team that owns `own` is returned: beside the touch line of its half, near the
+/// halfway line, where no robot stands and the ball is far enough away. `None` while there is no such
+/// position.
 pub(super) fn way_in(
     field: &FieldSpec,
     own: GoalEnd,
@@ -24,7 +25,7 @@ pub(super) fn way_in(
     let mut places = steps.into_iter().flat_map(|x| [Point::new(x, y), Point::new(x, -y)]);
     let place = places.find(|place| {
         place.distance(ball) >= limits::SUBSTITUTION_BALL_DISTANCE + limits::ROBOT_RADIUS
-            && others.iter().all(|other| other.distance(*place) >= 2.0 * limits::ROBOT_RADIUS + HAND)
+            && others.iter().all(|other| other.distance(*place) >= 2.0 * limits::ROBOT_RADIUS + HAND_BREADTH)
     })?;
     Some(Pose { position: place, heading: place.direction_to(Point::new(place.x(), 0.0)) })
 }
@@ -35,6 +36,6 @@ pub(super) fn within_reach(field: &FieldSpec, ball: Point<Field>) -> Point<Field
 }
 
 /// A hand's breadth, m.
-const HAND: f32 = 0.1;
+const HAND_BREADTH: f32 = 0.1;
 /// Distance inside the lines at which a ball is brought back, m: where a throw-in is taken.
 const INTO_THE_FIELD: f32 = 0.2;

@@ -4,7 +4,7 @@
 use super::*;
 
 #[test]
-fn an_attacker_that_touches_the_ball_partly_in_the_area_is_reported_once_in_two_seconds() {
+fn an_attackers_touch_partly_in_the_area_is_a_foul_every_two_seconds() {
     let mut stage = in_play();
     stage.move_ball(at(3.55, 0.0));
     stage.put(yellow(2), at(3.4, 0.0));
@@ -42,7 +42,7 @@ fn a_defender_entirely_in_its_area_that_touches_the_ball_is_a_penalty() {
 }
 
 #[test]
-fn the_keeper_may_touch_the_ball_in_its_area_and_no_one_commits_anything_without_touching_it() {
+fn the_keeper_may_touch_the_ball_in_its_area_and_others_may_be_there() {
     let mut stage = in_play();
     stage.move_ball(at(4.2, 0.0));
     stage.put(blue(1), at(3.9, 0.5));
@@ -53,7 +53,7 @@ fn the_keeper_may_touch_the_ball_in_its_area_and_no_one_commits_anything_without
 }
 
 #[test]
-fn the_keeper_changes_while_the_ball_is_in_the_other_half_only() {
+fn a_keeper_can_be_changed_only_with_the_ball_in_the_other_half() {
     let mut stage = in_play();
     stage.move_ball(at(2.0, 0.0));
     stage.step();
@@ -89,8 +89,7 @@ fn in_stop_attackers_have_two_seconds_to_leave_the_20_cm_around_the_area() {
     stage.run(1.9);
     assert_eq!(stage.count(Kind::AttackerTooClose), 0);
     stage.run(0.2);
-    let event = stage.only(Kind::AttackerTooClose);
-    assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(2))));
+    let event = stage.only_by(Kind::AttackerTooClose, yellow(2));
     let What::AttackerTooClose { distance, .. } = event.what else { panic!() };
     assert!((distance - 0.19).abs() < 0.006, "{distance}");
     assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
@@ -98,7 +97,7 @@ fn in_stop_attackers_have_two_seconds_to_leave_the_20_cm_around_the_area() {
 }
 
 #[test]
-fn at_20_cm_no_one_is_too_close() {
+fn an_attacker_20_cm_from_the_area_is_far_enough() {
     let mut stage = stopped();
     stage.put(yellow(2), at(3.20, 0.0));
     stage.put(blue(1), at(1.1, 2.5));
@@ -107,7 +106,7 @@ fn at_20_cm_no_one_is_too_close() {
 }
 
 #[test]
-fn the_second_such_foul_in_a_stop_halts_the_game() {
+fn a_teams_second_attacker_too_close_in_a_stop_halts_the_game() {
     let mut stage = stopped();
     stage.put(yellow(2), at(3.2, 0.5));
     stage.put(yellow(2), at(3.3, 0.0));
@@ -122,7 +121,7 @@ fn the_second_such_foul_in_a_stop_halts_the_game() {
 }
 
 #[test]
-fn at_a_free_kick_the_game_is_stopped_and_the_others_get_it() {
+fn an_attacker_too_close_at_a_free_kick_gives_the_others_a_free_kick() {
     let mut stage = stopped();
     stage.until(Phase::FreeKick(Colour::Yellow), 3.0);
     stage.put(yellow(2), at(3.3, 0.0));
@@ -185,7 +184,7 @@ fn one_too_many() -> Stage {
 }
 
 #[test]
-fn a_robot_in_its_goal_substitution_area_is_not_counted_one_before_it_is() {
+fn a_robot_entirely_in_its_goal_substitution_area_is_not_counted() {
     // Division A: the wall at 6.6 m, the area 0.3 m, the robot's centre at most 0.21 m before the wall.
     for (x, counted) in [(6.38, true), (6.40, false), (-6.40, true)] {
         let mut stage = stage_with(RefereeSettings::new(League::DivisionA));
@@ -202,7 +201,7 @@ fn a_robot_in_its_goal_substitution_area_is_not_counted_one_before_it_is() {
 }
 
 #[test]
-fn a_robot_in_the_margin_at_the_halfway_line_is_taken_off_at_once_unless_the_ball_is_near() {
+fn a_surplus_robot_beside_the_halfway_line_is_taken_off_away_from_the_ball() {
     let mut stage = one_too_many();
     stage.put(blue(5), at(0.2, 3.15));
     stage.move_ball(at(0.0, 2.8));
@@ -273,7 +272,7 @@ fn the_third_card_at_a_time_is_red_and_cards_can_be_switched_off() {
 }
 
 #[test]
-fn a_robot_behind_its_own_goal_line_is_off_the_field_where_there_is_a_substitution_area() {
+fn behind_the_own_goal_line_is_off_the_field_in_a_substitution_area() {
     for (league, place, counted) in [
         (League::DivisionA, at(6.45, 2.5), 2),
         (League::DivisionA, at(6.3, 2.5), 3),

@@ -3,9 +3,8 @@
 use super::*;
 
 #[test]
-fn time_is_distinguished_by_what_the_ball_does() {
-    let mut stage = stage();
-    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+fn match_running_and_in_play_time_are_counted_apart() {
+    let mut stage = kickoff(settings());
     let before = stage.referee.metrics().match_s;
     stage.run(4.0);
     stage.move_ball(at(0.2, 0.0));
@@ -33,7 +32,7 @@ fn shot(from: Point<Field>, x: f32, y: f32) -> TeamMetrics {
 }
 
 #[test]
-fn a_shot_goes_towards_the_goal_and_a_chance_between_the_posts() {
+fn shots_aim_near_the_goal_and_chances_between_the_posts() {
     let count = |team: TeamMetrics| (team.shots, team.chances);
     // From (2, 0) the posts at (4.5, ±0.5) lie at ±0.2 of the forward distance, one goal's width beside them
     // at ±0.6.
@@ -50,7 +49,7 @@ fn a_shot_goes_towards_the_goal_and_a_chance_between_the_posts() {
 }
 
 #[test]
-fn a_pass_arrives_at_a_teammate_half_a_metre_away_and_a_loss_at_an_opponent() {
+fn a_touch_of_a_teammate_half_a_metre_on_is_a_pass_of_an_opponent_a_loss() {
     let mut stage = in_play();
     // Yellow's kick-off that blue's robot 1 got.
     let metrics = stage.referee.metrics();

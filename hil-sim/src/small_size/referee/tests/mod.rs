@@ -4,8 +4,8 @@
 //! commit no offence unless a test moves them; the ball keeps its velocity. Steps of 10 ms.
 
 mod areas;
-mod event_loop;
 mod goals;
+mod manual;
 mod metrics;
 mod penalties;
 mod play;
@@ -99,10 +99,16 @@ fn stage() -> Stage {
     stage_with(settings())
 }
 
+/// Yellow may take its kick-off.
+fn kickoff(settings: RefereeSettings) -> Stage {
+    let mut stage = stage_with(settings);
+    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    stage
+}
+
 /// The first half runs, the ball lies at the centre, no robot touched it.
 fn in_play() -> Stage {
-    let mut stage = stage();
-    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    let mut stage = kickoff(settings());
     stage.put(yellow(1), at(-0.1, 0.0));
     stage.touch(yellow(1));
     stage.kick(0.0, 0.0);
@@ -111,6 +117,17 @@ fn in_play() -> Stage {
     assert_eq!(stage.phase(), Phase::Run);
     stage.put(yellow(1), at(-2.0, 2.0));
     stage.touch(blue(1));
+    stage
+}
+
+/// The ball went out over blue's touch line; yellow has to place it at (1, 2.8).
+fn placement() -> Stage {
+    let mut stage = in_play();
+    stage.kick_from(at(1.0, 2.9), blue(1), [0.0, 5.0]);
+    stage.until_stop(1.0);
+    stage.put(blue(1), at(2.0, 1.0));
+    stage.put(yellow(1), at(-2.0, 1.0));
+    stage.until(Phase::BallPlacement(Colour::Yellow), 1.0);
     stage
 }
 
@@ -310,6 +327,20 @@ impl Stage {
         let first = same.next().unwrap_or_else(|| panic!("no {kind:?} in {:#?}", self.referee.events()));
         assert_eq!(same.count(), 0, "more than one {kind:?}");
         first
+    }
+
+    /// The only event of that kind, which that robot caused.
+    fn only_by(&self, kind: Kind, who: Who) -> &RefereeEvent {
+        let event = self.only(kind);
+        assert_eq!((event.by, event.robot), (Some(who.colour), Some(who.id)));
+        event
+    }
+
+    /// The restart that follows, and its position.
+    fn assert_restart(&self, next: Restart, place: Point<Field>) {
+        assert_eq!(self.referee.next(), Some(next));
+        let placement = self.referee.placement().unwrap();
+        assert!(close(placement, place), "{placement:?}");
     }
 
     fn seconds(&self) -> f32 {

@@ -17,17 +17,7 @@ fn penalty_prepared() -> Stage {
 
 /// NORMAL_START was given; shooter is yellow's robot 1, keeper blue's robot 0.
 fn penalty() -> Stage {
-    let mut stage = in_play();
-    stage.move_ball(at(4.0, 0.0));
-    stage.put(blue(1), at(3.9, 0.0));
-    stage.touch(blue(1));
-    stage.until(Phase::Stop, 0.1);
-    stage.put(blue(0), at(4.5, 0.0));
-    stage.put(blue(1), at(-3.0, 1.0));
-    stage.put(blue(2), at(-3.0, -1.0));
-    stage.put(yellow(2), at(-3.0, -2.0));
-    stage.put(yellow(1), at(-3.0, 0.0));
-    stage.until(Phase::PreparePenalty(Colour::Yellow), 20.0);
+    let mut stage = penalty_prepared();
     stage.put(yellow(1), at(-1.7, 0.0));
     stage.until(Phase::Penalty(Colour::Yellow), 3.0);
     assert_eq!(stage.place_of_ball(), at(-1.5, 0.0));
@@ -45,7 +35,7 @@ fn failed(stage: &Stage) -> PenaltyEnd {
 }
 
 #[test]
-fn the_penalty_begins_when_keeper_and_others_stand_right_and_no_sooner() {
+fn a_penalty_starts_only_when_keeper_and_robots_stand_correctly() {
     let mut stage = in_play();
     stage.move_ball(at(4.0, 0.0));
     stage.put(blue(1), at(3.9, 0.0));
@@ -77,7 +67,7 @@ fn the_penalty_begins_when_keeper_and_others_stand_right_and_no_sooner() {
 }
 
 #[test]
-fn a_team_without_its_keeper_keeps_the_penalty_waiting() {
+fn a_penalty_waits_for_a_missing_keeper() {
     let mut stage = penalty_prepared();
     stage.take(blue(0));
     stage.run(15.0);
@@ -85,7 +75,7 @@ fn a_team_without_its_keeper_keeps_the_penalty_waiting() {
 }
 
 #[test]
-fn a_goal_counts_whatever_its_height_was() {
+fn a_penalty_goal_counts_at_any_ball_height() {
     let mut stage = penalty();
     shoot(&mut stage, 6.0, 0.0);
     stage.ball_mut().height = 0.3;
@@ -97,17 +87,16 @@ fn a_goal_counts_whatever_its_height_was() {
 }
 
 #[test]
-fn a_ball_beside_the_goal_is_a_goal_kick() {
+fn a_penalty_beside_the_goal_is_a_goal_kick() {
     let mut stage = penalty();
     shoot(&mut stage, 6.0, 1.0);
     stage.until(Phase::Stop, 3.0);
     assert_eq!(failed(&stage), PenaltyEnd::Out);
-    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
-    assert!(close(stage.referee.placement().unwrap(), at(3.5, 2.8)));
+    stage.assert_restart(Restart::FreeKick(Colour::Blue), at(3.5, 2.8));
 }
 
 #[test]
-fn a_keeper_that_turns_the_ball_back_saves() {
+fn a_keeper_that_turns_the_ball_back_saves_the_penalty() {
     let mut stage = penalty();
     shoot(&mut stage, 6.0, 0.0);
     stage.run(0.8);
@@ -117,7 +106,7 @@ fn a_keeper_that_turns_the_ball_back_saves() {
 }
 
 #[test]
-fn a_keeper_that_slows_the_ball_down_does_not_save_yet() {
+fn a_keeper_that_only_slows_the_ball_does_not_end_the_penalty() {
     let mut stage = penalty();
     shoot(&mut stage, 6.0, 0.0);
     stage.run(0.8);
@@ -128,7 +117,7 @@ fn a_keeper_that_slows_the_ball_down_does_not_save_yet() {
 }
 
 #[test]
-fn the_ball_may_not_move_away_from_the_goal() {
+fn a_penalty_ball_that_moves_back_fails() {
     let mut stage = penalty();
     shoot(&mut stage, 1.0, 0.0);
     stage.run(0.5);
@@ -138,7 +127,7 @@ fn the_ball_may_not_move_away_from_the_goal() {
 }
 
 #[test]
-fn after_ten_seconds_it_is_over() {
+fn a_penalty_is_over_after_ten_seconds() {
     let mut stage = penalty();
     stage.run(9.9);
     assert_eq!(stage.phase(), Phase::Penalty(Colour::Yellow));
@@ -147,7 +136,7 @@ fn after_ten_seconds_it_is_over() {
 }
 
 #[test]
-fn a_foul_of_the_shooting_team_fails_it_one_of_the_others_is_a_goal() {
+fn a_foul_fails_the_penalty_of_the_shooters_and_is_a_goal_of_the_others() {
     let mut stage = penalty();
     shoot(&mut stage, 7.0, 0.0);
     stage.run(0.1);
@@ -178,7 +167,7 @@ fn a_half_lasts_until_its_last_penalty_is_over() {
 }
 
 #[test]
-fn in_a_shoot_out_the_teams_take_turns_and_five_each_decide() {
+fn in_a_shoot_out_five_alternating_attempts_each_decide() {
     use rules::state::Stage as Part;
     let mut stage = stage();
     stage.obedient = true;

@@ -4,19 +4,18 @@
 use super::*;
 
 #[test]
-fn a_kick_over_the_limit_is_reported_once_and_the_game_goes_on() {
+fn a_kick_over_the_speed_limit_is_one_foul_that_does_not_stop_the_game() {
     let mut stage = in_play();
     stage.kick_from(at(-3.0, 1.0), yellow(1), [6.6, 0.0]);
     stage.run(0.5);
-    let event = stage.only(Kind::BallTooFast).clone();
-    assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
+    let event = stage.only_by(Kind::BallTooFast, yellow(1)).clone();
     let What::BallTooFast { speed, chipped } = event.what else { panic!() };
     assert!((speed - 6.6).abs() < 1e-3 && !chipped);
     assert_eq!((stage.phase(), stage.referee.accounts().yellow.foul_count()), (Phase::Run, 1));
 }
 
 #[test]
-fn speed_counts_in_three_dimensions() {
+fn the_speed_of_a_kick_counts_in_three_dimensions() {
     let mut stage = in_play();
     stage.move_ball(at(-3.0, 1.0));
     stage.touch(yellow(1));
@@ -51,15 +50,13 @@ fn dribbling_further_than_a_metre_is_a_free_kick_from_where_it_began() {
     let stage = dribble(0.99);
     assert_eq!(stage.count(Kind::DribbledTooFar), 0);
     let stage = dribble(1.1);
-    let event = stage.only(Kind::DribbledTooFar);
-    assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
+    let event = stage.only_by(Kind::DribbledTooFar, yellow(1));
     assert!(close(event.place, at(-1.0, 1.0)));
-    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
-    assert!(close(stage.referee.placement().unwrap(), at(-1.0, 1.0)));
+    stage.assert_restart(Restart::FreeKick(Colour::Blue), at(-1.0, 1.0));
 }
 
 #[test]
-fn a_ball_that_is_let_go_in_between_is_dribbled_again() {
+fn a_visible_separation_starts_the_dribbling_distance_again() {
     let mut stage = dribble(0.8);
     // 3 cm between hull (0.09 m) and ball (0.0215 m).
     stage.move_ball(at(-0.1085, 1.0));
@@ -76,8 +73,7 @@ fn a_ball_that_is_let_go_in_between_is_dribbled_again() {
 
 /// Yellow's kick-off; robot 1 has touched the ball, which is now at `x`.
 fn kicked_off(x: f32) -> Stage {
-    let mut stage = stage();
-    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    let mut stage = kickoff(settings());
     stage.put(yellow(1), at(-0.11, 0.0));
     stage.touch(yellow(1));
     stage.move_ball(at(x, 0.0));
@@ -90,8 +86,7 @@ fn the_kicker_may_not_touch_the_ball_again() {
     let mut stage = kicked_off(0.1);
     stage.put(yellow(1), at(0.0, 0.0));
     stage.touch(yellow(1));
-    let event = stage.only(Kind::DoubleTouch);
-    assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
+    stage.only_by(Kind::DoubleTouch, yellow(1));
     assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
     // No foul: it does not lead to a card.
     assert_eq!(stage.referee.accounts().yellow.foul_count(), 0);
@@ -108,7 +103,7 @@ fn bumping_the_ball_within_5_cm_is_no_double_touch() {
 }
 
 #[test]
-fn after_another_robots_touch_the_kicker_may() {
+fn after_another_robots_touch_the_kicker_may_touch_again() {
     let mut stage = kicked_off(0.1);
     stage.touch(yellow(2));
     stage.put(yellow(1), at(0.0, 0.0));
@@ -155,12 +150,11 @@ fn crash(yellow_speed: f32, blue_speed: f32) -> Stage {
 }
 
 #[test]
-fn the_faster_of_two_that_crash_is_at_fault_both_where_they_are_about_equally_fast() {
+fn the_faster_robot_is_at_fault_for_a_crash_both_if_nearly_equal() {
     let stage = crash(1.2, 0.2);
     assert_eq!(stage.count(Kind::CrashUnique), 0);
     let stage = crash(0.5, 1.2);
-    let event = stage.only(Kind::CrashUnique);
-    assert_eq!((event.by, event.robot), (Some(Colour::Blue), Some(id(1))));
+    let event = stage.only_by(Kind::CrashUnique, blue(1));
     let What::CrashUnique { victim, crash_speed, speed_difference, .. } = event.what else { panic!() };
     assert_eq!(victim, id(1));
     assert!((crash_speed - 1.7).abs() < 1e-5 && (speed_difference - 0.7).abs() < 1e-5);
@@ -172,7 +166,7 @@ fn the_faster_of_two_that_crash_is_at_fault_both_where_they_are_about_equally_fa
 }
 
 #[test]
-fn a_glancing_crash_counts_along_the_line_between_the_robots_only() {
+fn a_glancing_crash_counts_only_along_the_line_between_the_robots() {
     let mut stage = in_play();
     stage.put(yellow(1), at(0.0, 1.0));
     stage.put(blue(1), at(0.0, 1.18));
@@ -184,7 +178,7 @@ fn a_glancing_crash_counts_along_the_line_between_the_robots_only() {
 }
 
 #[test]
-fn who_drives_an_opponent_before_it_for_20_cm_pushes() {
+fn driving_an_opponent_ahead_for_20_cm_is_pushing() {
     let mut stage = in_play();
     let mut push = |metres: f32| {
         for step in 0..(metres * 100.0) as u32 {
@@ -201,13 +195,12 @@ fn who_drives_an_opponent_before_it_for_20_cm_pushes() {
     assert_eq!(push(0.1), 1);
     // From the position of the ball, the centre in this test, not of the robots.
     assert!(close(stage.referee.placement().unwrap(), at(0.3, 0.0)));
-    let event = stage.only(Kind::Pushed);
-    assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
+    stage.only_by(Kind::Pushed, yellow(1));
     assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
 }
 
 #[test]
-fn three_robots_around_the_ball_for_two_seconds_hold_it() {
+fn three_robots_around_the_ball_for_two_seconds_are_ball_holding() {
     let mut stage = in_play();
     let ball = at(-1.0, 1.0);
     stage.move_ball(ball);
@@ -222,17 +215,6 @@ fn three_robots_around_the_ball_for_two_seconds_hold_it() {
     lenient.robots = stage.robots.clone();
     lenient.run(30.0);
     assert_eq!(lenient.count(Kind::HeldBall), 0);
-}
-
-/// The ball went out over blue's touch line; yellow has to place it at (1, 2.8).
-fn placement() -> Stage {
-    let mut stage = in_play();
-    stage.kick_from(at(1.0, 2.9), blue(1), [0.0, 5.0]);
-    stage.until_stop(1.0);
-    stage.put(blue(1), at(2.0, 1.0));
-    stage.put(yellow(1), at(-2.0, 1.0));
-    stage.until(Phase::BallPlacement(Colour::Yellow), 1.0);
-    stage
 }
 
 #[test]
@@ -250,7 +232,7 @@ fn a_placed_ball_is_taken_at_once_by_the_team_that_placed_it() {
 }
 
 #[test]
-fn a_ball_with_a_robot_at_it_is_not_placed_yet() {
+fn a_ball_is_not_placed_while_a_robot_is_at_it() {
     let mut stage = placement();
     // 4 cm from hull to ball centre.
     stage.put(yellow(1), at(1.0, 2.67));
@@ -260,7 +242,7 @@ fn a_ball_with_a_robot_at_it_is_not_placed_yet() {
 }
 
 #[test]
-fn after_30_s_the_other_team_places_and_after_60_s_a_person() {
+fn after_30_s_the_other_team_places_and_after_60_s_a_human() {
     let mut stage = placement();
     stage.run(29.9);
     assert_eq!(stage.phase(), Phase::BallPlacement(Colour::Yellow));
@@ -277,20 +259,19 @@ fn after_30_s_the_other_team_places_and_after_60_s_a_person() {
 }
 
 #[test]
-fn a_team_that_failed_five_times_places_no_more() {
+fn a_team_may_not_place_after_five_failures() {
     let mut stage = placement();
     stage.referee.accounts.yellow.placement_failures = 4;
     stage.run(30.1);
     let yellow = &stage.referee.accounts().yellow;
-    assert!(yellow.placement_double_touch_blocked && !yellow.places());
+    assert!(yellow.placement_blocked && !yellow.places());
 }
 
 #[test]
-fn a_team_of_division_b_that_does_not_place_leaves_it_to_the_other() {
+fn in_division_b_the_other_team_places_for_one_that_cannot() {
     let mut settings = settings();
     settings.yellow.can_place_ball = false;
-    let mut stage = stage_with(settings);
-    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    let mut stage = kickoff(settings);
     stage.move_ball(at(1.0, 2.9));
     stage.step();
     stage.touch(blue(1));
@@ -301,9 +282,8 @@ fn a_team_of_division_b_that_does_not_place_leaves_it_to_the_other() {
 }
 
 #[test]
-fn in_division_a_who_fails_to_place_a_ball_that_went_out_loses_the_free_kick() {
-    let mut stage = stage_with(RefereeSettings::new(League::DivisionA));
-    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+fn in_division_a_a_failed_placement_after_ball_out_loses_the_free_kick() {
+    let mut stage = kickoff(RefereeSettings::new(League::DivisionA));
     stage.move_ball(at(1.0, 4.4));
     stage.step();
     stage.touch(blue(1));
@@ -331,7 +311,7 @@ fn a_ball_near_its_place_needs_no_placement() {
 }
 
 #[test]
-fn a_ball_in_the_goal_is_fetched_by_a_person() {
+fn a_ball_in_the_goal_is_placed_by_hand() {
     let mut stage = in_play();
     stage.kick_from(at(3.0, 0.0), yellow(2), [5.0, 0.0]);
     stage.ball_mut().height = 0.2;
@@ -347,7 +327,7 @@ fn a_ball_in_the_goal_is_fetched_by_a_person() {
 }
 
 #[test]
-fn a_ball_that_is_pushed_into_the_goal_in_a_placement_is_fetched_by_a_person() {
+fn a_ball_pushed_into_the_goal_in_a_placement_is_placed_by_hand() {
     let mut stage = placement();
     stage.move_ball(at(4.6, 0.0));
     stage.until(Phase::Stop, 0.1);

@@ -28,7 +28,7 @@ fn ends_in_time_with(mut stage: Stage, settings: RefereeSettings) -> Stage {
 }
 
 #[test]
-fn robots_that_never_move_but_to_make_way_do_not_hold_up_the_match() {
+fn robots_that_only_make_way_do_not_block_the_match() {
     let mut standing = stage();
     // They stand where they commit no offence, but in the wrong half after half-time.
     standing.obedient = true;
@@ -37,7 +37,7 @@ fn robots_that_never_move_but_to_make_way_do_not_hold_up_the_match() {
 }
 
 #[test]
-fn a_match_without_robots_goes_on() {
+fn a_match_without_robots_continues() {
     let mut stage = stage();
     stage.robots.clear();
     plays_to_the_end(stage);
@@ -54,7 +54,7 @@ fn in_the_way(stage: &mut Stage) {
 }
 
 #[test]
-fn robots_where_they_must_not_be_hold_the_match_up_for_ever_and_the_referee_says_which() {
+fn the_referee_names_the_robot_that_blocks_the_match_for_good() {
     let mut stage = stage();
     stage.put(blue(3), at(0.3, 0.0));
     let stage = ends_in_time(stage);
@@ -67,7 +67,7 @@ fn robots_where_they_must_not_be_hold_the_match_up_for_ever_and_the_referee_says
 }
 
 #[test]
-fn robots_that_do_not_drive_are_carried_out_of_the_way_in_a_halt() {
+fn robots_that_do_not_drive_are_moved_by_hand_in_a_halt() {
     let mut stage = stage();
     in_the_way(&mut stage);
     let mut settings = settings();
@@ -81,7 +81,7 @@ fn robots_that_do_not_drive_are_carried_out_of_the_way_in_a_halt() {
 }
 
 #[test]
-fn a_ball_that_has_to_be_put_down_holds_the_match_up_until_a_person_does_it() {
+fn a_ball_that_needs_manual_placement_blocks_until_it_is_placed() {
     let mut stage = stage();
     stage.obeyed = false;
     stage.move_ball(at(2.0, 1.0));
@@ -96,7 +96,7 @@ fn a_ball_that_has_to_be_put_down_holds_the_match_up_until_a_person_does_it() {
 }
 
 #[test]
-fn a_match_without_a_ball_goes_on() {
+fn a_match_without_a_ball_continues() {
     let mut stage = stage();
     stage.obeyed = false;
     stage.ball = None;
@@ -210,7 +210,7 @@ fn time_that_goes_back_is_ignored() {
 }
 
 #[test]
-fn steps_of_1_and_of_20_ms_see_the_same_offences() {
+fn steps_of_1_10_and_20_ms_find_the_same_offences() {
     let play = |step: Duration| {
         let mut stage = in_play();
         stage.step = step;
@@ -231,7 +231,7 @@ fn steps_of_1_and_of_20_ms_see_the_same_offences() {
 }
 
 #[test]
-fn a_ball_that_no_one_fetches_from_the_goal_does_not_score_again() {
+fn a_ball_left_in_the_goal_does_not_score_again() {
     let mut stage = in_play();
     stage.obeyed = false;
     stage.put(blue(0), at(4.45, 0.8));

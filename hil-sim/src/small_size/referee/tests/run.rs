@@ -14,7 +14,7 @@ fn a_match_begins_with_halt_stop_and_the_first_teams_kick_off() {
 }
 
 #[test]
-fn a_kick_off_begins_when_all_robots_are_in_their_halves_and_no_sooner() {
+fn a_kick_off_waits_until_all_robots_are_in_their_halves() {
     let mut stage = stage();
     stage.until(Phase::PrepareKickoff(Colour::Yellow), 10.0);
     // The controller requires all of the robot in its half, the kicker too: 0.09 m.
@@ -52,7 +52,7 @@ fn a_kick_off_waits_for_a_ball_in_the_centre_circle() {
 }
 
 #[test]
-fn one_kicker_may_be_in_the_centre_circle_a_second_robot_not() {
+fn only_one_kicker_may_be_in_the_centre_circle() {
     let mut stage = stage();
     stage.until(Phase::PrepareKickoff(Colour::Yellow), 16.0);
     stage.put(yellow(1), at(-0.2, 0.0));
@@ -65,8 +65,7 @@ fn one_kicker_may_be_in_the_centre_circle_a_second_robot_not() {
 
 #[test]
 fn the_ball_is_in_play_when_it_has_moved_5_cm_or_after_ten_seconds() {
-    let mut stage = stage();
-    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    let mut stage = kickoff(settings());
     stage.move_ball(at(0.04, 0.0));
     stage.step();
     assert_eq!(stage.phase(), Phase::Kickoff(Colour::Yellow));
@@ -75,8 +74,7 @@ fn the_ball_is_in_play_when_it_has_moved_5_cm_or_after_ten_seconds() {
     assert_eq!(stage.phase(), Phase::Run);
     assert_eq!(stage.referee.command(), RefereeCommand::NormalStart);
 
-    let mut stage = super::stage();
-    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    let mut stage = kickoff(settings());
     stage.run(9.9);
     assert_eq!(stage.phase(), Phase::Kickoff(Colour::Yellow));
     stage.run(0.2);
@@ -84,7 +82,7 @@ fn the_ball_is_in_play_when_it_has_moved_5_cm_or_after_ten_seconds() {
 }
 
 #[test]
-fn a_person_puts_the_ball_on_the_centre_before_a_kick_off_when_robots_have_made_room() {
+fn the_ball_is_placed_for_a_kick_off_once_robots_have_made_room() {
     let mut stage = stage();
     stage.move_ball(at(2.0, 1.0));
     stage.put(blue(1), at(0.1, 0.0));
@@ -98,7 +96,7 @@ fn a_person_puts_the_ball_on_the_centre_before_a_kick_off_when_robots_have_made_
 }
 
 #[test]
-fn half_time_ends_in_the_other_half_and_with_the_other_teams_kick_off() {
+fn after_half_time_teams_change_ends_and_the_other_kicks_off() {
     let clock = MatchClock::Playing { half: Duration::millis(20_000) };
     let mut stage = stage_with(RefereeSettings { clock, ..settings() });
     use rules::state::Stage as Part;
@@ -115,9 +113,8 @@ fn half_time_ends_in_the_other_half_and_with_the_other_teams_kick_off() {
 }
 
 #[test]
-fn playing_time_stands_still_while_no_one_may_play() {
-    let mut stage = stage();
-    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+fn playing_time_runs_only_while_a_team_may_play() {
+    let mut stage = kickoff(settings());
     assert_eq!(stage.referee.packet().stage_time_left, Some(300_000_000));
     stage.run(2.0);
     assert_eq!(stage.referee.packet().stage_time_left, Some(298_000_000));
@@ -143,7 +140,7 @@ fn a_match_of_600_simulated_seconds_ends_after_600_simulated_seconds() {
 }
 
 #[test]
-fn a_time_out_begins_at_the_next_stop_and_lasts_as_long_as_was_asked() {
+fn a_time_out_starts_at_the_next_stop_for_the_requested_time() {
     let mut stage = in_play();
     assert!(stage.referee.request_timeout(Colour::Blue, Duration::millis(5_000)));
     stage.run(3.0);
@@ -172,7 +169,7 @@ fn ten_goals_with_a_lead_of_two_end_the_match() {
 }
 
 #[test]
-fn a_drawn_knockout_match_goes_on_to_overtime_and_a_shoot_out() {
+fn a_drawn_knockout_match_has_overtime_and_a_shoot_out() {
     use rules::state::Stage as Part;
     let clock = MatchClock::Playing { half: Duration::millis(10_000) };
     let mut stage = stage_with(RefereeSettings { clock, knockout: true, ..settings() });

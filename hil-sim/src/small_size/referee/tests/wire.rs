@@ -72,8 +72,7 @@ fn trap_03_the_designated_position_is_sent_in_every_command_unless_asked_otherwi
 
 #[test]
 fn the_position_is_in_millimetres_and_always_there_in_a_placement() {
-    let mut stage = stage_with(RefereeSettings { position_always: false, ..settings() });
-    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    let mut stage = kickoff(RefereeSettings { position_always: false, ..settings() });
     stage.kick_from(at(1.0, 2.9), blue(1), [0.0, 5.0]);
     stage.until(Phase::Stop, 1.0);
     assert_eq!(stage.referee.packet().designated_position, None);
@@ -101,7 +100,7 @@ fn a_goal_is_announced_once_by_the_old_command() {
 }
 
 #[test]
-fn what_happened_is_reported_until_the_ball_may_move_again() {
+fn packets_list_events_until_the_ball_may_move_again() {
     let mut stage = in_play();
     stage.touch(blue(1));
     stage.kick(0.0, 6.0);
@@ -127,7 +126,7 @@ fn in_preparation_the_next_command_is_normal_start() {
 }
 
 #[test]
-fn every_event_is_reported_by_the_leagues_type_with_its_evidence_but_our_own_three() {
+fn every_event_but_our_three_has_the_leagues_type_and_evidence() {
     let shot = ShotEvent {
         kicker: Some(yellow(3)),
         from: at(1.0, 0.0),
@@ -214,7 +213,7 @@ fn every_event_is_reported_by_the_leagues_type_with_its_evidence_but_our_own_thr
 }
 
 #[test]
-fn a_crash_and_a_goal_carry_what_was_measured() {
+fn messages_of_crash_and_goal_have_the_measured_values() {
     let event = |what| RefereeEvent {
         at: Instant(9),
         by: Some(Colour::Blue),

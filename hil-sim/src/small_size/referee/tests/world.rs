@@ -75,7 +75,7 @@ fn a_kick_off_into_the_open_goal_counts_and_is_no_double_touch() {
 }
 
 #[test]
-fn the_speed_of_a_kick_is_the_simulators_own() {
+fn the_referee_uses_the_simulators_kick_speed() {
     let mut game = kick_off(6.51);
     game.until(Phase::Halt, 3.0, Order::default());
     assert!(game.referee.events().iter().all(|event| event.what.kind() != Kind::BallTooFast));
@@ -118,7 +118,7 @@ fn rough(game: &Match, who: Who, home: Point<Field>) -> Order {
 }
 
 #[test]
-fn a_rough_match_in_the_simulator_is_played_and_robots_that_obey_halt_and_stop_are_not_accused() {
+fn robots_that_obey_halt_and_stop_get_no_fouls_in_a_rough_match() {
     let mut game = Match::new(0.0);
     let clock = MatchClock::Simulated { total: Duration::millis(120_000) };
     // The ball is placed by hand: these robots cannot place it.

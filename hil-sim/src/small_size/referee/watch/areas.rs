@@ -39,15 +39,15 @@ impl Areas {
         for robot in scene.robots {
             let (field, place) = (scene.game.field, robot.pose.position);
             let own = scene.game.own_end(robot.who.colour);
-            let touches = |end: GoalEnd, least: InArea| {
-                robot.touches_ball && legality::in_area(field, end, place) >= least
-            };
-            let attacks = touches(own.opposite(), InArea::Partly);
+            let attacks =
+                robot.touches_ball && legality::in_area(field, own.opposite(), place) >= InArea::Partly;
             if self.attackers.raise(robot.who, attacks, scene.now) {
                 let depth = depth_in(field, own.opposite(), place);
                 events.push(scene.by(robot.who, place, What::AttackerTouchedBall { depth }));
             }
-            let defends = !scene.game.accounts.is_keeper(robot.who) && touches(own, InArea::Entirely);
+            let defends = robot.touches_ball
+                && !scene.game.accounts.is_keeper(robot.who)
+                && legality::in_area(field, own, place) >= InArea::Entirely;
             if self.defenders.raise(robot.who, defends, scene.now) {
                 let depth = depth_in(field, own, place);
                 events.push(scene.by(robot.who, place, What::DefenderInArea { depth }));
@@ -64,9 +64,7 @@ fn too_close(scene: &Scene<'_>, team: Colour, raised: &mut Option<Instant>) -> O
         return None;
     }
     let end = scene.game.own_end(team).opposite();
-    let distance = |robot: &RobotSeen| {
-        scene.game.field.distance_to_area(end, robot.pose.position) - limits::ROBOT_RADIUS
-    };
+    let distance = |robot: &RobotSeen| gap_to_area(scene.game.field, end, robot.pose.position);
     let ours = scene.robots.iter().filter(|robot| robot.who.colour == team);
     let nearest = ours.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     let distance = distance(nearest);
@@ -76,6 +74,11 @@ fn too_close(scene: &Scene<'_>, team: Colour, raised: &mut Option<Instant>) -> O
         let what = What::AttackerTooClose { distance: distance.max(0.0), ball: scene.ball.position };
         scene.by(nearest.who, nearest.pose.position, what)
     })
+}
+
+/// Distance from a robot's nearest side to the area, m: negative inside.
+fn gap_to_area(field: &FieldSpec, end: GoalEnd, position: Point<Field>) -> f32 {
+    field.distance_to_area(end, position) - limits::ROBOT_RADIUS
 }
 
 /// Depth of that robot's nearest side within the area, m: negative outside.

@@ -11,7 +11,7 @@ use super::super::event::{RefereeEvent, What};
 use super::super::scene::{COLOURS, Scene};
 use super::{Episodes, Touches};
 
-/// Monitors the ball.
+/// Monitor of speed, dribbling, double touch, keeper and progress.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BallWatch {
     too_fast: Episodes<Who>,
@@ -19,7 +19,7 @@ pub(super) struct BallWatch {
     kicker: Kicker,
     /// The team whose defence area holds the ball, and since when.
     held: Option<(Colour, Instant)>,
-    /// Where the ball stays, and since when.
+    /// Position at which the ball stays, and since when.
     rests: Option<(Point<Field>, Instant)>,
 }
 
@@ -59,7 +59,7 @@ impl BallWatch {
         let touch = touches.last()?;
         let speed = scene.fastest;
         let chipped = scene.ball.climb > 0.0 || scene.ball.height > limits::BALL_RADIUS;
-        let holds = legality::kicked_too_fast(scene.game.limits, speed - ROUNDING);
+        let holds = legality::kicked_too_fast(scene.game.limits, speed - SPEED_ROUNDING);
         let raised = self.too_fast.raise(touch.who, holds, scene.now);
         raised.then(|| scene.by(touch.who, touch.ball, What::BallTooFast { speed, chipped }))
     }
@@ -141,6 +141,6 @@ impl BallWatch {
 }
 
 /// Rounding tolerance, m/s: a kick ordered at exactly the limit is legal.
-const ROUNDING: f32 = 0.01;
+const SPEED_ROUNDING: f32 = 0.01;
 /// Radius within which the ball makes no progress, m: the game controller's tolerance.
 const NO_PROGRESS_DISTANCE: f32 = 0.1;

@@ -71,22 +71,19 @@ impl Bodies {
         let (crash_speed, speed_difference) = (fault.speed, fault.difference.abs());
         let angle = angle_between(velocities[0] - velocities[1], places[1] - places[0]);
         let place = places[0] + (places[1] - places[0]) * 0.5;
-        let unique = |violator: Who, victim: Who| {
-            let what = What::CrashUnique { victim: victim.id, crash_speed, speed_difference, angle };
-            scene.by(violator, place, what)
-        };
-        Some(match fault.blame {
-            Blame::First => unique(a, b),
-            Blame::Second => unique(b, a),
+        let (violator, victim) = match fault.blame {
+            Blame::First => (a, b.id),
+            Blame::Second => (b, a.id),
             Blame::Both => {
                 let (yellow, blue) = if a.colour == Colour::Yellow { (a.id, b.id) } else { (b.id, a.id) };
                 let what = What::CrashDrawn { yellow, blue, crash_speed, speed_difference, angle };
-                scene.of(None, place, what)
+                return Some(scene.of(None, place, what));
             }
-        })
+        };
+        Some(scene.by(violator, place, What::CrashUnique { victim, crash_speed, speed_difference, angle }))
     }
 
-    /// Whether both are in contact, and both move in the direction from the first to the second.
+    /// Pushing: both are in contact and move in the direction from the first to the second.
     fn push(&mut self, scene: &Scene<'_>, from: &RobotSeen, to: &RobotSeen, dt: f32) -> Option<RefereeEvent> {
         let pair = [from.who, to.who];
         let between = to.pose.position - from.pose.position;
@@ -94,9 +91,11 @@ impl Bodies {
         let at_ball = from.touches_ball && to.touches_ball;
         let line = between.unit()?;
         let pushed = to.velocity.dot(line);
-        let straight = pushed > to.velocity.norm() * STRAIGHT;
-        let pushes =
-            (apart <= CONTACT || at_ball) && straight && pushed > MOVING && from.velocity.dot(line) > MOVING;
+        let straight = pushed > to.velocity.norm() * PUSHED_STRAIGHT_COS_MIN;
+        let pushes = (apart <= CONTACT_GAP_MAX || at_ball)
+            && straight
+            && pushed > PUSHING_SPEED_MIN
+            && from.velocity.dot(line) > PUSHING_SPEED_MIN;
         if !pushes {
             if self.pushes.get(&pair).is_some_and(|push| scene.now.since(push.at).as_secs_f32() > PUSH_PAUSE)
             {
@@ -119,7 +118,7 @@ fn holding(scene: &Scene<'_>, team: Colour, since: &mut Option<Instant>) -> Opti
     let around = scene
         .robots
         .iter()
-        .filter(|robot| robot.who.colour == team && scene.distance_to_ball(robot) <= AROUND_BALL);
+        .filter(|robot| robot.who.colour == team && scene.distance_to_ball(robot) <= AROUND_BALL_DISTANCE);
     let mut directions: Vec<f32> =
         around.map(|robot| scene.ball.position.direction_to(robot.pose.position).radians()).collect();
     directions.sort_by(f32::total_cmp);
@@ -146,18 +145,18 @@ fn angle_between(a: Vector<geometry::Field>, b: Vector<geometry::Field>) -> f32 
 }
 
 /// Distance between hulls, m, below which they are in contact: as in the automatic referee of the TIGERs.
-const CONTACT: f32 = 0.01;
+const CONTACT_GAP_MAX: f32 = 0.01;
 /// Minimum speed of a moving robot, m/s: a robot with blocked wheels is slower.
-const MOVING: f32 = 0.2;
+const PUSHING_SPEED_MIN: f32 = 0.2;
 /// Pushed distance that is a foul, m: as in the automatic referee of the TIGERs while it judged pushing.
 const PUSH_DISTANCE: f32 = 0.2;
 /// Cosine of 0.7 rad: a robot is pushed if its motion is within this angle of the line between the two (same
 /// source).
-const STRAIGHT: f32 = 0.764_842;
+const PUSHED_STRAIGHT_COS_MIN: f32 = 0.764_842;
 /// Pauses up to this do not end a push, s.
 const PUSH_PAUSE: f32 = 0.2;
 /// Maximum distance from the ball, m, of robots around it: an opponent of 0.18 m fits behind them only.
-const AROUND_BALL: f32 = 0.18;
+const AROUND_BALL_DISTANCE: f32 = 0.18;
 /// The widest gap between two neighbours, seen from the ball, through which no opponent reaches it, rad
 /// (150°).
 const GAP: f32 = 2.617_994;

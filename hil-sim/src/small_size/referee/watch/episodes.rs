@@ -23,7 +23,7 @@ impl<K> Default for Episodes<K> {
 }
 
 impl<K: Ord> Episodes<K> {
-    /// Whether the present offence has to be reported.
+    /// True where the present offence has to be reported.
     pub(super) fn raise(&mut self, who: K, holds: bool, now: Instant) -> bool {
         let Some(episode) = self.0.get_mut(&who) else {
             if holds {
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_offence_is_reported_at_its_beginning_and_every_two_seconds() {
+    fn an_offence_is_raised_at_its_start_and_every_two_seconds() {
         let mut episodes = Episodes::default();
         let raised: Vec<u64> =
             (0..500).filter(|step| episodes.raise((), true, Instant(step * 10_000))).collect();
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_pause_makes_no_new_offence_a_longer_one_does() {
+    fn only_a_pause_of_two_seconds_starts_a_new_offence() {
         let mut episodes = Episodes::default();
         assert!(episodes.raise((), true, Instant(0)));
         assert!(!episodes.raise((), false, Instant(100_000)));

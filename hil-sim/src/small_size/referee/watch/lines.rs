@@ -10,10 +10,11 @@ use rules::{Colour, Phase, limits};
 
 use super::super::event::{PenaltyEnd, RefereeEvent, ShotEvent, What};
 use super::super::observation::RobotSeen;
-use super::super::scene::Scene;
+use super::super::scene::{GameView, Scene};
 use super::Touches;
+use super::touches::Touch;
 
-/// Monitors the lines.
+/// Monitor of balls that cross a line or the wall.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
     before: Option<Point<Field>>,
@@ -47,7 +48,7 @@ impl Lines {
     fn over_the_wall(&mut self, scene: &Scene<'_>) -> Option<RefereeEvent> {
         let (event, at) = self.sent_out.take()?;
         let touched = scene.robots.iter().any(|robot| robot.touches_ball);
-        if touched || scene.now.since(at).as_secs_f32() > FLIGHT {
+        if touched || scene.now.since(at).as_secs_f32() > FLIGHT_TIME_MAX {
             return None;
         }
         if scene.game.field.surface().distance_to(scene.ball.position) > limits::BALL_RADIUS {
@@ -71,24 +72,26 @@ fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> RefereeEve
     if let Phase::Penalty(team) = game.phase {
         return scene.of(Some(team), place, What::PenaltyFailed { reason: PenaltyEnd::Out });
     }
-    let goal_line = |end: GoalEnd| {
-        let aimless = last.filter(|touch| {
-            let own = game.own_end(touch.who.colour);
-            let from_kickoff = touch.ball.distance(Point::new(0.0, 0.0)) < limits::IN_PLAY_DISTANCE;
-            let crossing = Crossing { line: BoundaryLine::Goal(end), at: place };
-            let out = after_out(game.field, game.limits, crossing, own, Some(touch.ball), from_kickoff);
-            out.kind == OutKind::AimlessKick
-        });
-        aimless.map_or(What::LeftGoalLine, |touch| What::AimlessKick { from: touch.ball })
-    };
     let what = match crossing.line {
         BoundaryLine::Touch { .. } => What::LeftTouchLine,
-        BoundaryLine::Goal(end) | BoundaryLine::GoalOpening(end) => goal_line(end),
+        BoundaryLine::Goal(end) | BoundaryLine::GoalOpening(end) => match last {
+            Some(touch) if is_aimless(game, touch, end, place) => What::AimlessKick { from: touch.ball },
+            _ => What::LeftGoalLine,
+        },
     };
     match last {
         Some(touch) => scene.by(touch.who, place, what),
         None => scene.of(None, place, what),
     }
+}
+
+/// True for a ball that crossed the goal line after a kick from the own half (division B).
+fn is_aimless(game: &GameView<'_>, touch: Touch, end: GoalEnd, place: Point<Field>) -> bool {
+    let own = game.own_end(touch.who.colour);
+    let from_kickoff = touch.ball.distance(Point::new(0.0, 0.0)) < limits::IN_PLAY_DISTANCE;
+    let crossing = Crossing { line: BoundaryLine::Goal(end), at: place };
+    let out = after_out(game.field, game.limits, crossing, own, Some(touch.ball), from_kickoff);
+    out.kind == OutKind::AimlessKick
 }
 
 fn shot(scene: &Scene<'_>, touches: &Touches, scorer: Colour) -> ShotEvent {
@@ -107,4 +110,4 @@ fn shot(scene: &Scene<'_>, touches: &Touches, scorer: Colour) -> ShotEvent {
 
 /// Maximum time in which a ball that left may fly over the wall, s: a chip at 6.5 m/s is in the air for less
 /// than 1 s.
-const FLIGHT: f32 = 2.0;
+const FLIGHT_TIME_MAX: f32 = 2.0;

@@ -10,12 +10,12 @@ use super::super::scene::Scene;
 use super::Touches;
 use protocol::Who;
 
-/// Monitors a penalty.
+/// Monitor of the ball in a penalty.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PenaltyWatch {
     /// Maximum advance of the ball towards the goal, m.
     farthest: Option<f32>,
-    /// Its velocity before the keeper touched it.
+    /// Velocity of the ball before the keeper touched it.
     incoming: Option<Vector<Field>>,
     raised: bool,
 }

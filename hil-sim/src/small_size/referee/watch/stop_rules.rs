@@ -54,7 +54,7 @@ impl StopRules {
         }
         for robot in scene.robots {
             let speed = robot.velocity.norm();
-            if speed > STANDING && self.moved.insert(robot.who) {
+            if speed > STANDING_SPEED_MAX && self.moved.insert(robot.who) {
                 events.push(scene.by(robot.who, robot.pose.position, What::MovedInHalt { speed }));
             }
         }
@@ -112,7 +112,7 @@ impl StopRules {
             .map(|robot| scene.by(robot.who, robot.pose.position, What::InterferedPlacement))
     }
 
-    /// Whether that robot has been at a forbidden position for longer than the grace.
+    /// True for a robot that has been at a forbidden position for longer than the grace.
     fn stays(&mut self, scene: &Scene<'_>, robot: &RobotSeen, within: bool) -> bool {
         if !within {
             self.near_since.remove(&robot.who);
@@ -131,4 +131,4 @@ fn nearest<'a>(scene: &'a Scene<'_>, team: Colour) -> Option<&'a RobotSeen> {
 
 /// Speed below which a robot stands, m/s: below the apparent speed of a standing robot by a camera's noise,
 /// estimated.
-const STANDING: f32 = 0.05;
+const STANDING_SPEED_MAX: f32 = 0.05;

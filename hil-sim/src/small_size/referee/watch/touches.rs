@@ -11,7 +11,7 @@ use rules::{Colour, limits};
 use super::super::observation::RobotSeen;
 use super::super::scene::{COLOURS, Scene};
 
-/// The last touch.
+/// Last contact of a robot with the ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) who: Who,
@@ -19,7 +19,7 @@ pub(super) struct Touch {
     pub(super) ball: Point<Field>,
 }
 
-/// A lasting contact.
+/// Contact that has not ended by a visible separation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
     /// Position of the ball when it started.
@@ -88,9 +88,9 @@ impl Touches {
     }
 }
 
-/// Whether there is no visible separation between that robot and the ball.
+/// True without a visible separation between that robot and the ball.
 fn is_close(scene: &Scene<'_>, robot: &RobotSeen) -> bool {
-    scene.distance_to_ball(robot) - limits::BALL_RADIUS <= SEPARATION
+    scene.distance_to_ball(robot) - limits::BALL_RADIUS <= SEPARATION_GAP_MIN
         && scene.ball.height <= limits::ROBOT_HEIGHT
 }
 
@@ -100,4 +100,4 @@ fn index(team: Colour) -> usize {
 
 /// Gap between hull and ball that a camera sees, m: about the ball's radius, estimated. (The dribbler opening
 /// lies some 17 mm inside a robot's hull, so that a ball at the dribbler is 17 mm "within".)
-const SEPARATION: f32 = 0.02;
+const SEPARATION_GAP_MIN: f32 = 0.02;

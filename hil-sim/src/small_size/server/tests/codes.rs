@@ -12,7 +12,7 @@ fn codes_of(errors: &[SimulatorError]) -> Vec<&str> {
 }
 
 #[test]
-fn every_code_of_robots_commands_has_its_cause_and_a_message_with_the_hint() {
+fn every_error_code_of_robot_commands_has_its_cause_and_a_hint() {
     let kick =
         |speed, angle| RobotCommand { kick_speed: Some(speed), kick_angle: Some(angle), ..ahead(1, 0.0) };
     let dribble = |rpm| RobotCommand { dribbler_speed: Some(rpm), ..ahead(1, 0.0) };
@@ -32,7 +32,7 @@ fn every_code_of_robots_commands_has_its_cause_and_a_message_with_the_hint() {
         (&[dribble(f32::NAN), kick(2.0, 30.0)], &["NOT_A_NUMBER", "COMMANDED_TWICE"]),
     ];
     for (commands, expected) in cases {
-        let answer = lead(&mut server(), Colour::Blue, commands);
+        let answer = lead(&mut server(), commands);
         let expected: Vec<_> = expected.iter().map(|code| format!("ONETWO_{code}")).collect();
         assert_eq!(codes_of(&answer.errors), expected, "{commands:?}");
         assert!(answer.errors.iter().all(|error| error.message.as_ref().is_some_and(|m| m.len() > 20)));
@@ -41,7 +41,7 @@ fn every_code_of_robots_commands_has_its_cause_and_a_message_with_the_hint() {
 }
 
 #[test]
-fn every_code_of_the_simulators_port_has_its_cause() {
+fn every_error_code_of_teleports_and_pace_has_its_cause() {
     let robot = |id, of: fn(&mut TeleportRobot)| {
         let mut teleport = TeleportRobot { id, ..Default::default() };
         of(&mut teleport);
@@ -104,7 +104,7 @@ fn realism(of: fn(&mut RealismConfigErForce)) -> SimulatorConfig {
 }
 
 #[test]
-fn every_code_of_settings_has_its_cause_and_a_refused_setting_changes_nothing() {
+fn every_error_code_of_settings_has_its_cause_and_changes_nothing() {
     let port = |port| SimulatorConfig { vision_port: Some(port), ..Default::default() };
     let singular = |s: &mut RobotSpecs| {
         let angles = RobotWheelAngles { front_right: 0.0, back_right: 0.0, back_left: 0.0, front_left: 0.0 };
@@ -146,7 +146,7 @@ fn every_code_of_settings_has_its_cause_and_a_refused_setting_changes_nothing() 
 }
 
 #[test]
-fn a_ball_models_switch_that_is_not_simulated_is_reported_and_the_rest_holds() {
+fn an_unsupported_k_switch_is_an_error_and_the_rest_takes_effect() {
     for (k_switch, reported) in [(5.0 / 7.0, false), (0.7143, false), (0.69, true), (0.7, true)] {
         let mut server = server();
         let mut geometry = server.cameras.geometry(server.world(), None);
@@ -162,7 +162,7 @@ fn a_ball_models_switch_that_is_not_simulated_is_reported_and_the_rest_holds() {
 }
 
 #[test]
-fn a_datagram_of_another_kind_is_reported_so_on_each_port() {
+fn undecodable_datagrams_are_answered_with_an_error_on_each_port() {
     let mut server = server();
     server.handle(Port::Simulator, from(), b"\xff\xff\xff");
     server.handle(Port::Team(Colour::Yellow), from(), b"\xff\xff\xff");
@@ -175,7 +175,7 @@ fn a_datagram_of_another_kind_is_reported_so_on_each_port() {
 }
 
 #[test]
-fn a_synchronous_step_that_no_time_can_be_is_refused() {
+fn an_invalid_synchronous_step_is_refused() {
     for sim_step in [-1.0, f32::NAN, 11.0] {
         let mut server = server();
         let request = SimulationSyncRequest { sim_step: Some(sim_step), ..Default::default() };
@@ -187,7 +187,7 @@ fn a_synchronous_step_that_no_time_can_be_is_refused() {
 
 #[test]
 fn no_two_refusals_share_a_code() {
-    let range = crate::four_legged::parameters::ParameterError::Syntax(String::new());
+    let range = crate::parameters::ParameterError::Syntax(String::new());
     let fault = rules::FieldFault { field: "length", value: 0.0, least: 1.0, most: 2.0 };
     let all = [
         Refusal::Undecodable,
@@ -201,7 +201,7 @@ fn no_two_refusals_share_a_code() {
         Refusal::KickBackwards(0),
         Refusal::KickAngle { id: 0, asked: 0.0 },
         Refusal::DribblerBackwards(0),
-        Refusal::OutsideServerLoop(""),
+        Refusal::OutsideHall(""),
         Refusal::Pace(0.0),
         Refusal::Specs(range.clone()),
         Refusal::Geometry(fault),

@@ -21,7 +21,7 @@ fn states(server: &mut Server, packet: &GrsimPacket) -> Vec<(u16, RobotsStatus)>
 }
 
 #[test]
-fn grsims_older_protocol_drives_kicks_and_puts_things() {
+fn grsims_older_protocol_drives_kicks_and_places() {
     let mut grsim = server_like(Profile::Grsim);
     let command = |of: fn(&mut GrsimRobotCommand)| {
         let mut command = GrsimRobotCommand { id: 2, ..Default::default() };

@@ -4,7 +4,7 @@
 use super::*;
 
 #[test]
-fn trap_01_and_02_vision_is_as_the_other_simulators_send_it() {
+fn trap_01_and_02_vision_has_the_clock_and_geometry_of_the_profile() {
     let mut grsim = server_like(Profile::Grsim);
     steps(&mut grsim, 100);
     let frames: Vec<_> = sent(&mut grsim).0.into_iter().filter_map(|packet| packet.detection).collect();
@@ -17,30 +17,12 @@ fn trap_01_and_02_vision_is_as_the_other_simulators_send_it() {
     assert!(packets.iter().all(|packet| packet.detection.as_ref().unwrap().t_capture > 1.7e9));
 }
 
-/// The answers to a message to a team's port, datagram by datagram.
-fn answers(server: &mut Server, commands: &[RobotCommand]) -> Vec<RobotControlResponse> {
-    sent(server);
-    let control = RobotControl { robot_commands: commands.to_vec() };
-    server.handle(Port::Team(Colour::Blue), from(), &control.encode_to_vec());
-    let answers = sent(server).1;
-    answers.iter().map(|bytes| RobotControlResponse::decode(&bytes[..]).unwrap()).collect()
-}
-
-/// The codes in the answer to a message to the simulator's port; `None`: it is not answered.
-fn codes(server: &mut Server, command: &SimulatorCommand) -> Option<Vec<String>> {
-    sent(server);
-    server.handle(Port::Simulator, from(), &command.encode_to_vec());
-    let answer = sent(server).1.pop()?;
-    let answer = SimulatorResponse::decode(&answer[..]).unwrap();
-    Some(answer.errors.iter().map(|error| error.code.clone().unwrap()).collect())
-}
-
 fn ids(answer: &RobotControlResponse) -> Vec<u32> {
     answer.feedback.iter().map(|feedback| feedback.id).collect()
 }
 
 #[test]
-fn trap_09_answers_name_the_robots_that_were_commanded() {
+fn trap_09_answers_list_the_commanded_robots() {
     let gone = TeleportRobot { id: blue(0), present: Some(false), ..Default::default() };
     let gone = SimulatorControl { teleport_robot: vec![gone], ..Default::default() };
     let both = [ahead(0, 0.0), ahead(3, 0.0)];
@@ -60,7 +42,7 @@ fn trap_09_answers_name_the_robots_that_were_commanded() {
 }
 
 #[test]
-fn trap_09_a_tenth_of_er_forces_answers_is_lost() {
+fn trap_09_er_force_drops_a_tenth_of_its_answers() {
     let mut erforce = server_like(Profile::ErForce);
     let all: Vec<_> = (0..6).map(|id| ahead(id, 0.0)).collect();
     let reported: usize =
@@ -70,7 +52,7 @@ fn trap_09_a_tenth_of_er_forces_answers_is_lost() {
 }
 
 #[test]
-fn er_force_reports_errors_alone_and_by_its_own_codes() {
+fn er_force_answers_errors_only_with_its_own_codes() {
     let mut erforce = server_like(Profile::ErForce);
     erforce.radio.answer_loss = 0.0;
     let ball = |teleport| SimulatorCommand {
@@ -143,7 +125,7 @@ fn er_force_reports_errors_alone_and_by_its_own_codes() {
 }
 
 #[test]
-fn er_force_wants_whole_specifications() {
+fn er_force_requires_complete_specifications() {
     let mut erforce = server_like(Profile::ErForce);
     let specs = |specs| SimulatorCommand {
         control: None,
@@ -181,7 +163,7 @@ fn er_force_wants_whole_specifications() {
 }
 
 #[test]
-fn trap_09_without_commands_for_a_tenth_of_a_second_robots_stand_by() {
+fn trap_09_robots_brake_after_100_ms_without_commands() {
     let mut erforce = server_like(Profile::ErForce);
     for _ in 0..30 {
         answers(&mut erforce, &[ahead(2, 0.5)]);
@@ -193,7 +175,7 @@ fn trap_09_without_commands_for_a_tenth_of_a_second_robots_stand_by() {
 }
 
 #[test]
-fn trap_09_a_command_without_a_dribblers_speed_resets_it_there_and_leaves_it_here() {
+fn trap_09_a_command_without_dribbler_speed_stops_it_only_in_er_force() {
     let after = |profile| {
         let mut server = server_like(profile);
         answers(&mut server, &[RobotCommand { dribbler_speed: Some(1_000.0), ..ahead(1, 0.0) }]);
@@ -206,7 +188,7 @@ fn trap_09_a_command_without_a_dribblers_speed_resets_it_there_and_leaves_it_her
 }
 
 #[test]
-fn trap_10_grsim_takes_nothing_but_robots_specifications() {
+fn trap_10_grsim_accepts_robot_specifications_only() {
     let mut grsim = server_like(Profile::Grsim);
     let geometry = Some(grsim.cameras.geometry(grsim.world(), None));
     let asked = SimulatorConfig {
@@ -225,18 +207,16 @@ fn trap_10_grsim_takes_nothing_but_robots_specifications() {
         roll: Some(true),
         ..Default::default()
     };
-    let codes = control(&mut grsim, SimulatorControl { teleport_ball: Some(ball), ..Default::default() });
+    let codes = teleport_ball(&mut grsim, ball);
     assert_eq!(codes, ["GRSIM_UNSUPPORTED_TELEPORT_SAFELY", "GRSIM_UNSUPPORTED_ROLL_BALL"]);
     assert_eq!(grsim.world().ball.position.x(), 1.0, "the rest of it is done");
 }
 
 #[test]
-fn trap_11_a_ball_may_be_put_far_outside_and_vision_reports_it() {
+fn trap_11_a_ball_far_outside_the_field_is_in_the_vision_packets() {
     let mut server = server();
     let ball = TeleportBall { x: Some(6.5), y: Some(0.2), ..Default::default() };
-    assert!(
-        control(&mut server, SimulatorControl { teleport_ball: Some(ball), ..Default::default() }).is_empty()
-    );
+    assert!(teleport_ball(&mut server, ball).is_empty());
     steps(&mut server, 100);
     let frames: Vec<_> = sent(&mut server).0.into_iter().filter_map(|packet| packet.detection).collect();
     assert!(frames.iter().flat_map(|frame| &frame.balls).any(|ball| ball.x == 6_500.0));
@@ -244,17 +224,17 @@ fn trap_11_a_ball_may_be_put_far_outside_and_vision_reports_it() {
 }
 
 #[test]
-fn grsims_dribbler_turns_above_0_and_a_robot_without_a_velocity_goes_on() {
+fn grsims_dribbler_is_on_above_0_rpm_and_robots_keep_their_velocity() {
     let mut grsim = server_like(Profile::Grsim);
     for (rpm, expected) in [(0.5, 1.0), (0.0, 0.0), (20_000.0, 1.0)] {
-        lead(&mut grsim, Colour::Blue, &[RobotCommand { dribbler_speed: Some(rpm), ..ahead(1, 0.7) }]);
+        lead(&mut grsim, &[RobotCommand { dribbler_speed: Some(rpm), ..ahead(1, 0.7) }]);
         steps(&mut grsim, 5);
         assert_eq!(grsim.world().robot(own(1)).unwrap().order().dribbler, expected);
     }
     let silent = RobotCommand { id: 1, ..Default::default() };
-    assert!(lead(&mut grsim, Colour::Blue, &[silent]).errors.is_empty());
+    assert!(lead(&mut grsim, &[silent]).errors.is_empty());
     let empty = RobotCommand { move_command: Some(RobotMoveCommand { command: None }), ..silent };
-    let reported = lead(&mut grsim, Colour::Blue, &[empty]);
+    let reported = lead(&mut grsim, &[empty]);
     assert_eq!(reported.errors[0].code.as_deref(), Some("GRSIM_UNSUPPORTED_MOVE_COMMAND"));
     steps(&mut grsim, 5);
     let order = *grsim.world().robot(own(1)).unwrap().order();
@@ -267,12 +247,12 @@ fn drive_ahead(speed: f32) -> crate::small_size::Drive {
 }
 
 #[test]
-fn grsims_vision_has_the_balls_height_and_its_place_as_it_is() {
+fn grsims_vision_has_the_true_ball_position_and_height() {
     let seen = |profile| {
         let mut server = server_like(profile);
         let up =
             TeleportBall { x: Some(1.0), y: Some(1.0), z: Some(0.5), vz: Some(2.0), ..Default::default() };
-        control(&mut server, SimulatorControl { teleport_ball: Some(up), ..Default::default() });
+        teleport_ball(&mut server, up);
         steps(&mut server, 60);
         let frames = sent(&mut server).0.into_iter().filter_map(|packet| packet.detection);
         frames.flat_map(|frame| frame.balls).next().unwrap()
@@ -290,11 +270,11 @@ fn grsims_vision_has_the_balls_height_and_its_place_as_it_is() {
 }
 
 #[test]
-fn grsim_takes_robots_that_are_parked_off_the_field() {
+fn grsim_parks_robots_that_are_placed_far_off_the_field() {
     let mut grsim = server_like(Profile::Grsim);
     let put = |server: &mut Server, x: f32| {
         let robot = TeleportRobot { id: blue(4), x: Some(x), y: Some(-2.5), ..Default::default() };
-        control(server, SimulatorControl { teleport_robot: vec![robot], ..Default::default() })
+        teleport_robot(server, robot)
     };
     assert!(put(&mut grsim, 100.0).is_empty());
     assert!(!grsim.world().robot(own(4)).unwrap().present);

@@ -11,7 +11,7 @@ fn random(seed: u64) -> WorldModel {
 }
 
 #[test]
-fn every_random_world_passes_the_checks_in_every_league_and_a_seed_gives_it_again() {
+fn every_random_world_is_valid_in_every_league_and_repeatable() {
     for league in LEAGUES {
         for seed in 0..300 {
             let choice = WorldChoice::Random(seed);
@@ -25,7 +25,7 @@ fn every_random_world_passes_the_checks_in_every_league_and_a_seed_gives_it_agai
 }
 
 #[test]
-fn random_worlds_fill_their_ranges() {
+fn random_worlds_fill_the_ranges_of_their_quantities() {
     let of = |number: fn(&WorldModel) -> f32| {
         let mut values: Vec<f32> = (0..400).map(|seed| number(&random(seed))).collect();
         values.sort_by(f32::total_cmp);
@@ -81,7 +81,7 @@ fn quantities_are_drawn_independently() {
 }
 
 #[test]
-fn the_nominal_world_is_the_leagues_to_the_bit() {
+fn the_nominal_world_equals_the_leagues_bit_by_bit() {
     let play = |mut world: World| {
         let mut trace = TraceHash::default();
         for n in 0..6 {
@@ -109,7 +109,7 @@ fn the_nominal_world_is_the_leagues_to_the_bit() {
 }
 
 #[test]
-fn the_document_reports_every_quantity_with_its_bounds_and_law() {
+fn the_documentation_lists_every_quantity_with_bounds_and_distribution() {
     let document = include_str!("../../../../../docs/fields.md");
     for quantity in DRAWS {
         let [low, high] = quantity.bounds;

@@ -7,14 +7,14 @@ use crate::small_size::referee::{InternalReferee, RefereeSettings};
 use rules::Colour;
 
 #[test]
-fn a_robot_of_kick_gain_seven_tenths_kicks_with_seven_tenths_of_what_is_ordered() {
+fn a_kick_gain_of_0_7_kicks_at_0_7_of_the_ordered_speed() {
     let mut world = with_ball(|model| model.robots.kick_gain = [0.7, 0.7]);
     let speed = kick_of(&mut world, yellow(1), 5.0, 0.0);
     assert!((speed - 3.5).abs() < 1e-4, "{speed}");
 }
 
 #[test]
-fn a_chip_loses_its_ratio_beside_and_a_flat_kick_does_not() {
+fn the_chip_ratio_applies_to_chips_but_not_to_flat_kicks() {
     let ratio = |model: &mut WorldModel| {
         (model.robots.kick_gain, model.robots.chip_ratio) = ([0.9, 0.9], [0.8, 0.8]);
     };
@@ -23,7 +23,7 @@ fn a_chip_loses_its_ratio_beside_and_a_flat_kick_does_not() {
 }
 
 #[test]
-fn no_gain_kicks_harder_than_the_kicker_can() {
+fn a_kick_gain_above_1_stays_within_the_kickers_limit() {
     let mut world = with_ball(|model| {
         (model.robots.kick_gain, model.parameters.kick.flat) = ([1.1, 1.1], 6.5);
     });
@@ -31,7 +31,7 @@ fn no_gain_kicks_harder_than_the_kicker_can() {
 }
 
 #[test]
-fn each_robot_has_its_own_numbers_whoever_was_put_down_first_and_a_seed_gives_them_again() {
+fn each_robot_draws_its_own_traits_whatever_the_order_of_placing() {
     let model = WorldModel::of(League::DivisionB, &WorldChoice::Random(4)).unwrap();
     let traits = |ids: &[u8], seed: u64| {
         let mut world = World::of_model(League::DivisionB, &model, seed);
@@ -48,7 +48,7 @@ fn each_robot_has_its_own_numbers_whoever_was_put_down_first_and_a_seed_gives_th
 }
 
 #[test]
-fn a_robot_of_half_the_acceleration_needs_twice_the_time_and_one_of_half_the_speed_goes_half_as_fast() {
+fn traits_scale_a_robots_acceleration_and_speed() {
     let time_to = |share: f32| {
         let mut world = with_ball(|model| model.robots.acceleration = [share, share]);
         world.put_ball(Ball::at(Point::new(0.0, 2.5)));
@@ -67,7 +67,7 @@ fn a_robot_of_half_the_acceleration_needs_twice_the_time_and_one_of_half_the_spe
 }
 
 #[test]
-fn wheels_that_slip_a_tenth_tell_one_metre_a_second_and_go_nine_tenths() {
+fn slipping_wheels_measure_1_m_per_s_at_a_true_0_9() {
     let mut world = with_ball(|model| model.robots.slip = [0.1, 0.1]);
     world.put_ball(Ball::at(Point::new(0.0, 2.5)));
     lead(&mut world, local(1.0, 0.0, 2.0), 800);
@@ -97,7 +97,7 @@ fn first_motion(link: LinkModel) -> u64 {
 }
 
 #[test]
-fn a_latency_of_forty_ms_delays_the_first_motion_by_forty_ms() {
+fn the_first_motion_is_late_by_the_links_latency() {
     let at_once = first_motion(LinkModel::IDEAL);
     for latency_ms in [1, 5, 40, 60] {
         assert_eq!(
@@ -108,7 +108,7 @@ fn a_latency_of_forty_ms_delays_the_first_motion_by_forty_ms() {
 }
 
 #[test]
-fn jitter_adds_up_to_its_bound_and_orders_keep_their_order() {
+fn jitter_stays_within_its_bound_and_keeps_the_order_of_commands() {
     let link = LinkModel { latency_ms: 20, jitter_ms: 30, loss: 0.0 };
     let mut latency = Latency::new(&link, 3);
     let (mut arrived, mut late) = (Vec::new(), Vec::new());
@@ -126,7 +126,7 @@ fn jitter_adds_up_to_its_bound_and_orders_keep_their_order() {
 }
 
 #[test]
-fn the_links_losses_come_beside_the_airs_own() {
+fn losses_of_link_and_air_combine() {
     let air = crate::AirSettings::with_loss(0.1);
     assert_eq!(LinkModel::IDEAL.over(&air), air);
     let lossy = LinkModel { loss: 0.1, ..LinkModel::IDEAL }.over(&air);
@@ -147,7 +147,7 @@ fn crowd(league: League, count: u8, seed: u64) -> World {
 }
 
 #[test]
-fn bystanders_stand_clear_of_players_ball_lines_and_areas_on_and_beside_the_field() {
+fn bystanders_stand_clear_of_players_ball_lines_and_areas() {
     let (mut on, mut beside) = (0, 0);
     for (league, most) in [(League::DivisionB, 11), (League::DivisionA, 10)] {
         for seed in 0..30 {
@@ -178,7 +178,7 @@ fn bystanders_stand_clear_of_players_ball_lines_and_areas_on_and_beside_the_fiel
 fn cameras_see_bystanders_and_the_referee_does_not_count_them() {
     let mut world = crowd(League::DivisionB, 8, 2);
     world.step();
-    let frames = Cameras::of(Profile::Ours, 0.0, &world, 1).snapshot(&world);
+    let frames = Cameras::of(Profile::Ours, 0.0, &world, 1).capture(&world);
     let seen: std::collections::BTreeSet<_> =
         frames.iter().flat_map(|frame| &frame.robots_blue).filter_map(|robot| robot.robot_id).collect();
     assert!(seen.len() >= 9 && seen.contains(&15), "{seen:?}");

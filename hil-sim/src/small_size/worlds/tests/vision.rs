@@ -39,7 +39,7 @@ fn waits(frames: &[(u64, DetectionFrame)]) -> Vec<u64> {
 }
 
 #[test]
-fn as_many_frames_come_as_the_rate_says() {
+fn cameras_send_at_their_frame_rate() {
     for rate in [50.0, 75.0, 100.0] {
         let frames = watched(|model| model.parameters.camera.rate = rate, 4);
         assert!(frames.len().abs_diff((rate * 4.0) as usize) <= 5, "{rate}: {}", frames.len());
@@ -60,7 +60,7 @@ fn a_gap_of_a_hundred_ms_leaves_a_hundred_ms_without_frames() {
 }
 
 #[test]
-fn gaps_last_from_their_least_to_their_most() {
+fn gaps_fill_the_range_of_their_durations() {
     let frames = watched(|model| (model.vision.gap_every_s, model.vision.gap_ms) = (0.5, GAP_MS), 120);
     let gaps: Vec<u64> = waits(&frames).into_iter().filter(|wait| *wait > 10).collect();
     assert!(gaps.iter().all(|gap| *gap >= 40), "{gaps:?}");
@@ -68,7 +68,7 @@ fn gaps_last_from_their_least_to_their_most() {
 }
 
 #[test]
-fn jitter_delays_up_to_its_bound_and_frames_keep_their_order() {
+fn vision_jitter_stays_within_its_bound_and_keeps_the_frame_order() {
     let frames = watched(|model| model.vision.jitter_ms = 15, 20);
     assert!(frames.windows(2).all(|pair| pair[0].1.frame_number < pair[1].1.frame_number));
     // Our frames are 35 ms late without it.
@@ -78,7 +78,7 @@ fn jitter_delays_up_to_its_bound_and_frames_keep_their_order() {
 }
 
 #[test]
-fn for_a_few_frames_two_robots_of_a_team_bear_each_others_number() {
+fn two_robots_of_a_team_swap_numbers_for_a_few_frames() {
     let frames = watched(|model| (model.vision.swap_every_s, model.vision.swap_frames) = (1.0, [3, 3]), 60);
     let (mut runs, mut length) = (Vec::new(), 0);
     for (_, frame) in &frames {
@@ -102,7 +102,7 @@ fn for_a_few_frames_two_robots_of_a_team_bear_each_others_number() {
 }
 
 #[test]
-fn ghosts_come_and_balls_are_missed_as_often_as_the_noise_says() {
+fn ghosts_and_missed_balls_have_the_configured_probabilities() {
     let frames = watched(
         |model| {
             let noise = &mut model.parameters.noise;

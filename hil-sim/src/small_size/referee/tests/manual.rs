@@ -5,7 +5,7 @@ use rules::state::RefereeCommand;
 use super::*;
 
 #[test]
-fn a_halt_by_hand_lasts_until_another_command() {
+fn a_manual_halt_lasts_until_the_next_command() {
     let mut stage = in_play();
     assert!(stage.referee.command_by_hand(RefereeCommand::Halt));
     stage.run(60.0);
@@ -16,19 +16,18 @@ fn a_halt_by_hand_lasts_until_another_command() {
 }
 
 #[test]
-fn a_free_kick_by_hand_is_reached_by_a_stop_where_the_ball_lies() {
+fn a_manual_free_kick_follows_a_stop_where_the_ball_lies() {
     let mut stage = in_play();
     stage.move_ball(at(1.0, 1.0));
     stage.step();
     assert!(stage.referee.command_by_hand(RefereeCommand::FreeKick(Colour::Blue)));
     assert_eq!(stage.phase(), Phase::Stop);
-    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
-    assert!(close(stage.referee.placement().unwrap(), at(1.0, 1.0)));
+    stage.assert_restart(Restart::FreeKick(Colour::Blue), at(1.0, 1.0));
     stage.until(Phase::FreeKick(Colour::Blue), 60.0);
 }
 
 #[test]
-fn what_makes_no_sense_is_not_done() {
+fn manual_commands_that_do_not_fit_the_phase_are_refused() {
     let mut stage = in_play();
     for command in [
         RefereeCommand::NormalStart,

@@ -1,4 +1,4 @@
-//! `surface`: test bench: brains on wheels in the simulator, commanded by the test.
+//! `test_field`: test bench: brains on wheels in the simulator, commanded by the test.
 //!
 //! Every brain gets snapshots of the true state, rounded as in the wire format, 75 a second, and the command
 //! that the test set. SI units, field frame; a step is 10 ms. No camera, no noise of snapshots, no radio:
@@ -21,7 +21,7 @@ use protocol::{CycleId, Duration, Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase, Side};
 
 /// A field with our robots under brains, and opponents where the test places them.
-pub struct Surface<'a> {
+pub struct TestField<'a> {
     /// True state of ball and robots.
     pub world: World,
     /// The phase of the game, from our side.
@@ -49,7 +49,7 @@ pub struct Surface<'a> {
     air: Vec<(RobotId, TeamMessage)>,
 }
 
-impl<'a> Surface<'a> {
+impl<'a> TestField<'a> {
     /// Our robots (blue) at these poses (x, y in m, degrees), and a resting ball.
     pub fn new(league: League, base: CaseBase<'a>, ball: (f32, f32), ours: &[(u8, f32, f32, f32)]) -> Self {
         let parameters = Parameters::of(league).expect("a Small Size league");
@@ -131,8 +131,8 @@ impl<'a> Surface<'a> {
 
     /// Steps for `seconds`, calling `look` in every step.
     pub fn during(&mut self, seconds: f32, mut look: impl FnMut(&Self)) {
-        self.until(seconds, |surface| {
-            look(surface);
+        self.until(seconds, |field| {
+            look(field);
             false
         });
     }

@@ -1,4 +1,4 @@
-//! `event_loop`: manual control of the referee: commands and cards out of turn; the game continues as if an
+//! `manual`: manual control of the referee: commands and cards out of turn; the game continues as if an
 //! event had caused them. Field frame, m.
 
 use geometry::{Field, Point};
