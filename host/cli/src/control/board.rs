@@ -4,11 +4,12 @@
 use std::time::{Duration, Instant};
 
 use arena::cases::LibraryHandle;
+use feed::{CaseExplanations, Composer, LedgerFeed, Moment, SCENE_EVERY_S, tick};
 use host::Host;
 use page::{MatchEvent, Page, Powers, UserRequest};
 
-use crate::live::{CaseExplanations, Composer, LedgerFeed, Moment, PageArgs, SCENE_EVERY_S, tick};
-use crate::output::note;
+use crate::args::page::{NoPage, PageArgs};
+use crate::output::{note, program_log};
 
 /// A page and its composer.
 pub(super) struct Board {
@@ -30,10 +31,10 @@ impl Board {
         settings: casebase::RetrievalSettings,
     ) -> Option<Self> {
         let open = || {
-            let composer = Composer::new(library_handle.as_ref());
+            let composer = Composer::new(library_handle.as_ref(), program_log());
             let ledger = LedgerFeed::new(library_handle.as_ref());
             let page = args.open(title, false, powers, CaseExplanations::new(library_handle, settings))?;
-            Ok::<_, crate::Failure>(Self { page, composer, ledger, drawn_at: None, took: Duration::ZERO })
+            Ok::<_, NoPage>(Self { page, composer, ledger, drawn_at: None, took: Duration::ZERO })
         };
         open().map_err(|failure| note!("page     there is none: {failure}")).ok()
     }

@@ -33,16 +33,17 @@ use ssl::net::Interfaces;
 
 use super::alarms::Alarms;
 use super::board::Board;
+use super::failure::ControlError;
 use super::inbox::{Inbox, Mail, Source};
 use super::radio_alarms::RadioAlarms;
 use super::terminal::Terminal;
 use super::threads;
 use super::tuning::{Tuning, keep_learned};
 use super::watch::Watch;
-use super::{Cases, identity, port_for_teams, simulator};
+use super::{Cases, port_for_teams, simulator};
 use crate::Failure;
-use crate::failure::NetworkError;
-use crate::live::PageArgs;
+use crate::args::page::PageArgs;
+use crate::identity;
 use crate::net::NetSender;
 use crate::output::note;
 use crate::stop::stopped_by_hand;
@@ -82,8 +83,8 @@ pub(super) fn run(
 ) -> Result<ExitCode, Failure> {
     let stopped = stopped_by_hand();
     let key = identity::team_key(config)?;
-    let Cases { library_handle, settings: retrieval, description } = cases;
-    let link = open_link(config, robots, key, description)?;
+    let Cases { library_handle, settings: retrieval, robot_arguments } = cases;
+    let link = open_link(config, robots, key, robot_arguments)?;
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let usual = HostSettings::new(config.colour, config.league, identity::this_epoch(config));
     let settings = HostSettings {
@@ -102,11 +103,11 @@ pub(super) fn run(
     };
     let strategy =
         config.strategy.as_deref().map(|command| StrategyProcess::start(command, STRATEGY_PATIENCE));
-    let strategy = strategy.transpose().map_err(NetworkError::Strategy)?;
+    let strategy = strategy.transpose().map_err(ControlError::Strategy)?;
     let recorder = keeps.record.map(|stem| {
         Recorder::begin(stem, &header(&settings))
             .and_then(BackgroundRecorder::start)
-            .map_err(|error| NetworkError::Record(stem.to_owned(), error))
+            .map_err(|error| ControlError::Record(stem.to_owned(), error))
     });
     let recorder = recorder.transpose()?;
     note!(
@@ -224,7 +225,7 @@ fn open_link(
         host::config::RobotLink::Simulator(host) => simulator(host, config.colour)?,
         _ => ([127, 0, 0, 1], 0).into(),
     };
-    let program = std::env::current_exe().map_err(NetworkError::Program)?;
+    let program = std::env::current_exe()?;
     let sim = |_: &str| SimSettings {
         program,
         colour: config.colour,
@@ -234,7 +235,7 @@ fn open_link(
         key,
         more,
     };
-    Ok(host::shell::open(&config.robots, sim).map_err(NetworkError::Link)?)
+    Ok(host::shell::open(&config.robots, sim)?)
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -455,7 +456,7 @@ impl EventLoop {
         let seen = host.world().ours(host.settings().us).count();
         format!(
             "{}, vision {} packets, {} of ours seen, {} received, {} frames to robots",
-            crate::replay::phase_description(host.game().phase),
+            host.game().phase,
             self.counts.vision,
             seen,
             host.radio().present(now).count(),

@@ -8,7 +8,7 @@
 mod alarms;
 mod board;
 mod event_loop;
-mod identity;
+mod failure;
 mod inbox;
 mod port_for_teams;
 mod radio_alarms;
@@ -32,15 +32,14 @@ use protocol::RobotId;
 use rules::Colour;
 use ssl::net::addresses;
 
-pub(crate) use identity::real_epoch;
-
 use crate::Failure;
+use crate::args::page::PageArgs;
+use crate::args::parsers::{RobotIds, kick, robot_ids, seconds};
 use crate::args::{DirectoryArgs, SettingsArgs};
-use crate::failure::NetworkError;
-use crate::live::{PageArgs, library_handle_of};
+use crate::library;
 use crate::output::{note, print_text, printable_path};
-use crate::robot::ensure_built_for;
-use crate::simulate::seconds;
+use crate::robot_description::ensure_built_for;
+use failure::ControlError;
 
 /// Our team, and the addresses to receive from and send to. What is not given here is taken from the file,
 /// and else from the league.
@@ -77,8 +76,8 @@ pub(crate) struct ControlArgs {
     robots: Option<String>,
     /// Which robots are started in a simulator, such as 0-5 or 1,4,7; by default the league's number, from 0
     /// on.
-    #[arg(long, value_name = "IDS", value_parser = ids)]
-    ids: Option<Ids>,
+    #[arg(long, value_name = "IDS", value_parser = robot_ids)]
+    ids: Option<RobotIds>,
     /// The team's key: 32 hexadecimal digits in a file, as `openssl rand -hex 16` makes them; needed for
     /// udp:// and serial:.
     #[arg(long, value_name = "FILE")]
@@ -158,10 +157,6 @@ pub(crate) struct CasesArgs {
     settings: SettingsArgs,
 }
 
-/// Robots' numbers, each once, rising.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Ids(Vec<RobotId>);
-
 /// `onetwo control`.
 pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     ensure_built_for(args.robot.as_deref())?;
@@ -171,13 +166,13 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::SUCCESS);
     }
     if let Some(path) = &args.init {
-        init(path, &config.to_toml()).map_err(|error| NetworkError::Init(path.clone(), error))?;
+        init(path, &config.to_toml()).map_err(|error| ControlError::Init(path.clone(), error))?;
         note!("the team's settings are in {}", printable_path(path));
         return Ok(ExitCode::SUCCESS);
     }
     let usual = Parameters::of(config.league).map_or(0, |parameters| parameters.robots);
     let robots = match &args.ids {
-        Some(Ids(ids)) => ids.clone(),
+        Some(RobotIds(ids)) => ids.clone(),
         None => (0..usual).filter_map(RobotId::new).collect(),
     };
     let page = (!args.headless).then_some(&args.page);
@@ -191,11 +186,12 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     event_loop::run(&config, !args.no_learning, &robots, cases, &keeps, args.duration, page)
 }
 
-/// The case library, and the form in which our robots receive cases.
+/// The case library, and what retrieval is set to.
 struct Cases {
     library_handle: Option<LibraryHandle>,
     settings: casebase::RetrievalSettings,
-    description: Vec<OsString>,
+    /// Flags that pass both on to virtual robots.
+    robot_arguments: Vec<OsString>,
 }
 
 impl Cases {
@@ -204,9 +200,9 @@ impl Cases {
         let named = library.map(|directory| [OsString::from("--library"), directory.into()]);
         let set = |(name, value): &(String, String)| ["--set".into(), format!("{name}={value}").into()];
         Ok(Self {
-            library_handle: library_handle_of(league, library)?,
+            library_handle: library::of_league(league, library)?,
             settings: args.settings.choose()?.settings,
-            description: named
+            robot_arguments: named
                 .into_iter()
                 .flatten()
                 .chain(args.settings.given().iter().flat_map(set))
@@ -226,8 +222,8 @@ const CONFIG_LEN_MAX: u64 = 1 << 20;
 /// A file of settings.
 fn read(path: &Path) -> Result<TeamSettings, Failure> {
     let text = foreign::read_text(path, CONFIG_LEN_MAX)
-        .map_err(|error| NetworkError::ConfigUnreadable(path.to_owned(), error))?;
-    Ok(TeamSettings::from_toml(&text).map_err(|error| NetworkError::ConfigFile(path.to_owned(), error))?)
+        .map_err(|error| ControlError::ConfigUnreadable(path.to_owned(), error))?;
+    Ok(TeamSettings::from_toml(&text).map_err(|error| ControlError::ConfigFile(path.to_owned(), error))?)
 }
 
 /// Flags override the file, which overrides the defaults.
@@ -264,7 +260,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
     };
     let settings = flags.over(file);
     let reported = settings.vision.is_some();
-    let mut config = settings.complete().map_err(NetworkError::Config)?;
+    let mut config = settings.complete()?;
     if !reported && matches!(config.robots, RobotLink::Simulator(_)) {
         config.vision = addresses::VISION_SIMULATED.into();
     }
@@ -284,30 +280,7 @@ fn simulator(host: &str, colour: Colour) -> Result<SocketAddr, Failure> {
     };
     let port = port.and_then(|port: u16| port.checked_add(offset));
     let found = port.and_then(|port| (name, port).to_socket_addrs().ok()?.next());
-    found.ok_or_else(|| NetworkError::UnknownSimulator(host.to_owned()).into())
-}
-
-fn ids(text: &str) -> Result<Ids, String> {
-    let wrong = || "expected numbers from 0 to 15, such as 0-5 or 1,4,7".to_owned();
-    let mut ids = Vec::new();
-    for part in text.split(',') {
-        let (first, last) = part.split_once('-').unwrap_or((part, part));
-        let (first, last): (u8, u8) =
-            (first.trim().parse().map_err(|_| wrong())?, last.trim().parse().map_err(|_| wrong())?);
-        for number in first..=last {
-            ids.push(RobotId::new(number).ok_or_else(wrong)?);
-        }
-    }
-    ids.sort_unstable();
-    ids.dedup();
-    if ids.is_empty() { Err(wrong()) } else { Ok(Ids(ids)) }
-}
-
-fn kick(text: &str) -> Result<Calibration, String> {
-    let parts =
-        text.split_once('=').and_then(|(robot, kick)| Some((robot.parse().ok()?, kick.parse().ok()?)));
-    let (robot, kick) = parts.ok_or_else(|| "expected ROBOT=FACTOR, such as 3=1.06".to_owned())?;
-    Ok(Calibration { robot, kick, latency_ms: None })
+    found.ok_or_else(|| ControlError::UnknownSimulator(host.to_owned()).into())
 }
 
 #[cfg(test)]
@@ -315,7 +288,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn robots_in_a_simulator_are_reported_of_cases_and_settings_in_their_own_words() {
+    fn case_flags_reach_virtual_robots() {
         #[derive(Debug, clap::Parser)]
         struct Line {
             #[command(flatten)]
@@ -323,17 +296,9 @@ mod tests {
         }
         let line = <Line as clap::Parser>::parse_from(["control", "--set", "free_path=fuzzy"]);
         let cases = Cases::choose(&line.cases, rules::League::DivisionB).unwrap();
-        assert_eq!(cases.description, ["--set", "free_path=fuzzy"].map(OsString::from));
+        assert_eq!(cases.robot_arguments, ["--set", "free_path=fuzzy"].map(OsString::from));
         let line = <Line as clap::Parser>::parse_from(["control", "--library", "/nowhere"]);
         assert!(Cases::choose(&line.cases, rules::League::DivisionB).is_err());
-    }
-
-    #[test]
-    fn robots_are_named_by_ranges_and_lists() {
-        let numbers = |text| ids(text).map(|Ids(ids)| ids.iter().map(|id| id.number()).collect::<Vec<_>>());
-        assert_eq!(numbers("0-2"), Ok(vec![0, 1, 2]));
-        assert_eq!(numbers("7,1, 1"), Ok(vec![1, 7]));
-        assert!(numbers("0-16").is_err() && numbers("").is_err() && numbers("5-2").is_err());
     }
 
     #[test]
@@ -342,11 +307,5 @@ mod tests {
         assert_eq!(port("127.0.0.1", Colour::Blue), Some(10301));
         assert_eq!(port("127.0.0.1:20300", Colour::Yellow), Some(20302));
         assert_eq!(port("127.0.0.1:x", Colour::Blue), None);
-    }
-
-    #[test]
-    fn a_calibration_is_a_robot_and_a_factor() {
-        assert_eq!(kick("3=1.06"), Ok(Calibration { robot: 3, kick: 1.06, latency_ms: None }));
-        assert!(kick("3").is_err());
     }
 }

@@ -11,8 +11,8 @@ use host::learned::Learned;
 use page::Page;
 
 use super::CONFIG_LEN_MAX;
-use crate::live::ParameterFeed;
 use crate::output::printable_path;
+use feed::ParameterFeed;
 
 /// The configuration that the program started with, and what was changed since.
 pub(super) struct Tuning {

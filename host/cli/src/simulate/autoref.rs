@@ -10,7 +10,7 @@ use ssl::controller::{
     AutoRefRegistration, AutoRefToController, ControllerReply, ControllerToAutoRef, StatusCode,
 };
 use ssl::event::{GameEvent, GameEventType};
-use ssl::net::{Connection, addresses};
+use ssl::net::Connection;
 
 /// The name it registers under; a controller that has a key for this name asks for a signature.
 pub(super) const NAME: &str = "onetwo";
@@ -171,33 +171,11 @@ fn name_of(event: &GameEvent) -> String {
     format!("{:?}", kind.unwrap_or(GameEventType::Unknown))
 }
 
-/// `HOST` or `HOST:PORT`, as given, with the league's port where none is given.
-pub(super) fn address(text: &str) -> Result<String, String> {
-    let port = addresses::AUTOREF_PORT;
-    let whole = match text.rsplit_once(':') {
-        Some((host, port)) if !host.is_empty() && port.parse::<u16>().is_ok() => text.to_owned(),
-        None if !text.is_empty() => format!("{text}:{port}"),
-        _ => {
-            return Err(format!(
-                "expected the game controller's HOST or HOST:PORT, such as 127.0.0.1:{port}"
-            ));
-        }
-    };
-    Ok(whole)
-}
-
 #[cfg(test)]
 mod tests {
     use std::net::TcpListener;
 
     use super::*;
-
-    #[test]
-    fn the_leagues_port_is_meant_where_none_is_given() {
-        assert_eq!(address("127.0.0.1").as_deref(), Ok("127.0.0.1:10007"));
-        assert_eq!(address("gc.local:1234").as_deref(), Ok("gc.local:1234"));
-        assert!(address("").is_err() && address("host:").is_err() && address(":10007").is_err());
-    }
 
     /// A controller's side of one connection: sends its first message, takes the registration, answers it
     /// with `code`.

@@ -3,6 +3,9 @@
 
 use std::time::{Duration, Instant};
 
+use feed::{
+    CaseExplanations, Composer, Moment, SCENE_EVERY_S, SnapshotRequest, Snapshots, colour, command_of,
+};
 use foreign::excerpt;
 use geometry::Point;
 use hil_sim::small_size::referee::InternalReferee;
@@ -13,11 +16,10 @@ use page::{Page, Powers, UserRequest};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
-use crate::live::{
-    CaseExplanations, Composer, Moment, PageArgs, SCENE_EVERY_S, SnapshotRequest, Snapshots, colour,
-    command_of, library_handle_of,
-};
-use crate::output::note;
+use crate::Failure;
+use crate::args::page::PageArgs;
+use crate::library;
+use crate::output::{note, program_log};
 
 /// Longest part of a name sent by a viewer that is quoted in an answer, characters.
 const NAME_LEN: usize = 60;
@@ -52,15 +54,15 @@ impl Board {
     pub(super) fn open(args: &PageArgs, league: League, seed: u64, speed: f32) -> Option<Self> {
         let open = || {
             let explanations = CaseExplanations::new(
-                library_handle_of(league, None)?,
+                library::of_league(league, None)?,
                 casebase::RetrievalSettings::default(),
             );
             let page =
                 args.open(format!("simulate, {}", league.name()), false, Powers::Simulation, explanations)?;
             let feed = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
-            Ok::<_, crate::Failure>(Self {
+            Ok::<_, Failure>(Self {
                 page,
-                composer: Composer::new(None),
+                composer: Composer::new(None, program_log()),
                 feed,
                 drawn_at: None,
                 speed,
@@ -87,7 +89,8 @@ impl Board {
     /// Another game starts.
     pub(super) fn restart(&mut self, league: League, seed: u64) {
         self.feed = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
-        (self.composer, self.drawn_at, self.seed, self.t) = (Composer::new(None), None, seed, 0.0);
+        (self.composer, self.drawn_at, self.seed, self.t) =
+            (Composer::new(None, program_log()), None, seed, 0.0);
         self.page.clear();
     }
 

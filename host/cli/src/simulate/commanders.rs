@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn two_programs_that_command_one_robot_are_reported_within_two_seconds_and_every_ten() {
+    fn two_commanders_of_a_robot_are_reported_within_2_s_and_every_10_s() {
         let message = message(|n| 4_000 + (n % 2) as u16);
         assert_eq!(message.len(), 3, "{message:?}");
         assert!(message[0].0 < 2_000 && message[0].1.contains("blue robot 3"), "{message:?}");

@@ -81,11 +81,7 @@ impl Crew {
 
     /// The state of the game, as text.
     pub(super) fn state(&self) -> String {
-        if self.silent {
-            "no referee".to_owned()
-        } else {
-            crate::replay::phase_description(self.game.phase())
-        }
+        if self.silent { "no referee".to_owned() } else { self.game.phase().to_string() }
     }
 
     /// Receives waiting packets; they go to `message`, lines for the operator to `lines`.

@@ -19,14 +19,15 @@ use ssl::net::{LoopbackProbe, probe_loopback};
 use ssl::simulation::{SimulatorCommand, SimulatorControl};
 use ssl::vision::WrapperPacket;
 
+use super::SimulateArgs;
 use super::board::Board;
 use super::crew::Crew;
+use super::failure::SimulateError;
 use super::ports::Ports;
 use super::sync::SyncPorts;
-use super::{RefereeKind, SimulateArgs};
 use crate::Failure;
-use crate::failure::NetworkError;
-use crate::live::PageArgs;
+use crate::args::page::PageArgs;
+use crate::args::parsers::RefereeKind;
 use crate::net::NetSender;
 use crate::output::note;
 use crate::progress::Progress;
@@ -69,7 +70,7 @@ pub(super) fn run(
         None => None,
         Some((_, Ok(sync))) => Some(sync),
         Some((blue, Err(error))) => {
-            return Err(NetworkError::Sync(blue, error).into());
+            return Err(SimulateError::Sync(blue, error).into());
         }
     };
     if let Some(sync) = &sync {
@@ -208,7 +209,7 @@ impl Referee {
     fn new(args: &SimulateArgs, unix_us: u64) -> Result<Self, Failure> {
         let crew = |from| {
             let crew = Crew::new(from, args.league, args.assistant, args.autoref.as_deref());
-            crew.map(Box::new).map_err(NetworkError::NoRules)
+            crew.map(Box::new)
         };
         let serves = args.assistant || args.autoref.is_some();
         let who = match args.referee {
@@ -229,7 +230,7 @@ impl Referee {
         match &mut self.who {
             RefereeSource::Ours(ours) => *ours = internal(args, unix_us, seed)?,
             RefereeSource::Elsewhere(crew) => {
-                crew.restart().map_err(NetworkError::NoRules)?;
+                crew.restart()?;
             }
             RefereeSource::NoWatcher => {}
         }
@@ -256,7 +257,7 @@ impl Referee {
     /// The state of the game, as text.
     fn state(&self) -> String {
         match &self.who {
-            RefereeSource::Ours(ours) => crate::replay::phase_description(ours.phase()),
+            RefereeSource::Ours(ours) => ours.phase().to_string(),
             RefereeSource::NoWatcher => "no referee".to_owned(),
             RefereeSource::Elsewhere(crew) => crew.state(),
         }
@@ -300,7 +301,7 @@ fn internal(args: &SimulateArgs, unix_us: u64, seed: u64) -> Result<Box<Internal
     let settings = RefereeSettings { epoch_us: unix_us, ..RefereeSettings::new(args.league) };
     let settings = RefereeSettings { blue_on_positive_half: false, max_robots: args.robots, ..settings };
     let ours = InternalReferee::new(settings, seed);
-    Ok(Box::new(ours.map_err(NetworkError::NoRules)?))
+    Ok(Box::new(ours?))
 }
 
 /// Our own tracker on the simulated vision.

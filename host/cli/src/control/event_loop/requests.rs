@@ -8,7 +8,7 @@ use page::UserRequest;
 
 use super::EventLoop;
 use crate::control::board::Board;
-use crate::live::{change_of, description_of, description_of_test, test_of};
+use feed::{change_of, description_of, description_of_test, test_of};
 
 impl EventLoop {
     /// Sends the scene to the page, and does what viewers ask for.

@@ -1,20 +1,39 @@
-//! `identity`: the team's key and this start's epoch, as `onetwo control` uses them.
+//! `identity`: the team's key and this start's epoch, for links to robots.
 //!
 //! A link to real robots refuses the key of zeros, which is public, unless `--insecure-zero-key` permits it.
 
+use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use host::config::{RobotLink, TeamConfig};
 use host::shell::{epoch, key};
 use protocol::frame::TeamKey;
+use thiserror::Error;
 
 use crate::Failure;
-use crate::failure::NetworkError;
 use crate::output::note;
 
+/// Real robots, and a key that is public: that of the file, or none given.
+#[derive(Debug, Error)]
+#[error(
+    "{link}: {}: anybody in radio range could command the robots. Make a key with `openssl rand -hex 16 > \
+     team.key`, provision the robots with it (docs/security.md) and add --key-file team.key; or add \
+     --insecure-zero-key",
+    match file {
+        Some(file) => format!("the key in {} is all zeros, which is public", file.display()),
+        None => "there is no --key-file, and the key of zeros is public".to_owned(),
+    }
+)]
+pub(crate) struct PublicKey {
+    /// The link as in `--robots`.
+    pub(crate) link: String,
+    /// `--key-file`.
+    pub(crate) file: Option<PathBuf>,
+}
+
 /// The team's key: the file's, or zeros where that is allowed.
-pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
-    let read = config.key_file.as_deref().map(key::read).transpose().map_err(NetworkError::Key)?;
+pub(crate) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
+    let read = config.key_file.as_deref().map(key::read).transpose()?;
     let key = read.as_ref().map_or(TeamKey::ZERO, |read| read.key);
     let link = match &config.robots {
         RobotLink::Simulator(_) => None,
@@ -22,7 +41,7 @@ pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
         RobotLink::Serial { device, .. } => Some(format!("serial:{device}")),
     };
     if let Some(link) = link.filter(|_| key == TeamKey::ZERO && !config.insecure_zero_key) {
-        return Err(NetworkError::PublicKey { link, file: config.key_file.clone() }.into());
+        return Err(PublicKey { link, file: config.key_file.clone() }.into());
     }
     if let Some(warning) = read.and_then(|read| read.warning) {
         note!("warning: {warning}");
@@ -31,7 +50,7 @@ pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
 }
 
 /// This start's epoch. Robots in a simulator start with their host, so nothing is kept for them.
-pub(super) fn this_epoch(config: &TeamConfig) -> u32 {
+pub(crate) fn this_epoch(config: &TeamConfig) -> u32 {
     if matches!(config.robots, RobotLink::Simulator(_)) { calendar() } else { real_epoch() }
 }
 

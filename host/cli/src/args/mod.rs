@@ -1,11 +1,15 @@
-//! `args`: command-line arguments. The arguments that verbs share (docs/case-format.md §5).
+//! `args`: the arguments that verbs share (docs/case-format.md §5); [`parsers`] reads the values of flags,
+//! [`page`] has the page's.
+
+pub(crate) mod page;
+pub(crate) mod parsers;
 
 use std::path::PathBuf;
 
-use arena::cases::Chosen;
+use arena::cases::{Chosen, SettingFailure};
+use casebase::SettingError;
 use clap::Args;
-
-use crate::Failure;
+use thiserror::Error;
 
 /// Which libraries: every built-in league unless a directory is given.
 #[derive(Debug, Args)]
@@ -29,7 +33,7 @@ pub(crate) struct LibraryArgs {
 #[derive(Debug, Args)]
 pub(crate) struct SettingsArgs {
     /// Change a setting of retrieval; may be repeated.
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = parsers::assignment)]
     assignments: Vec<(String, String)>,
 }
 
@@ -40,16 +44,21 @@ impl SettingsArgs {
     }
 
     /// The defaults, changed as the command line orders; of two assignments to a name the later one counts.
-    pub(crate) fn choose(&self) -> Result<Chosen, Failure> {
+    pub(crate) fn choose(&self) -> Result<Chosen, NoSuchSetting> {
         let given = self.assignments.iter().map(|(name, value)| (name.as_str(), value.as_str()));
-        Chosen::of(given).map_err(Failure::Setting)
+        Chosen::of(given).map_err(NoSuchSetting)
     }
 }
 
-fn assignment(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((name, value)) => Ok((name.trim().to_owned(), value.trim().to_owned())),
-        None => Err("expected NAME=VALUE, such as thr_c=1200".to_owned()),
+/// `--set` with a name or value that retrieval does not know.
+#[derive(Debug, Error)]
+#[error("--set {0}")]
+pub(crate) struct NoSuchSetting(SettingFailure);
+
+impl NoSuchSetting {
+    /// Why `value` cannot be given to the setting `name`.
+    pub(crate) fn new(name: &str, value: &str, error: SettingError) -> Self {
+        Self(SettingFailure::new(name, value, error))
     }
 }
 
@@ -65,14 +74,3 @@ pub(crate) const SHORT_VERSION: &str = concat!(
     env!("ONETWO_COMMIT_DATE"),
     ")"
 );
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_assignment_is_split_at_its_first_equals_sign() {
-        assert_eq!(assignment("a = b=c"), Ok(("a".to_owned(), "b=c".to_owned())));
-        assert!(assignment("thr_c").is_err());
-    }
-}

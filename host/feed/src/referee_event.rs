@@ -1,4 +1,4 @@
-//! `match_event`: referee events of a recorded match. Commands, stages, goals, game events, cards, and what
+//! `referee_event`: events in the packets of the referee. Commands, stages, goals, game events, cards, and what
 //! else changed: names, robots allowed, places for the ball; each once.
 
 use std::collections::BTreeSet;
@@ -11,26 +11,30 @@ use ssl::referee::{Command, Referee, Stage, TeamInfo};
 
 /// An event that the referee reported for the first time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct MatchEvent {
+pub struct RefereeEvent {
     /// Seconds since the start of the file.
-    pub(crate) at_s: f64,
-    /// Kind of event.
-    pub(crate) kind: Kind,
-    /// Its name, as the league writes it.
-    pub(crate) name: String,
+    pub at_s: f64,
+    /// RefereeEventKind of event.
+    pub kind: RefereeEventKind,
+    /// Name as the league writes it.
+    pub name: String,
     /// Team or player, and number.
     #[serde(skip_serializing_if = "String::is_empty")]
     #[serde(rename = "words")]
-    pub(crate) description: String,
+    pub description: String,
 }
 
 /// Kinds of events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Kind {
+pub enum RefereeEventKind {
+    /// Another command, or the same with another number.
     Command,
+    /// Another stage of the match.
     Stage,
+    /// A higher score.
     Goal,
+    /// A game event of the league, such as a ball out of the field.
     GameEvent,
     /// A yellow or red card was given.
     Card,
@@ -47,7 +51,7 @@ const EVENTS_MAX: usize = 65_536;
 
 /// Detects new events in each packet of the referee.
 #[derive(Debug, Default)]
-pub(crate) struct Finder {
+pub struct RefereeEventFinder {
     last: Option<Last>,
     events: BTreeSet<Vec<u8>>,
 }
@@ -57,7 +61,7 @@ struct Last {
     command: i32,
     counter: u32,
     stage: i32,
-    /// Where the ball is to be placed, mm, where a command asks for that.
+    /// Place for the ball, mm, where a command asks for that.
     place: Option<[i32; 2]>,
     /// Yellow's and blue's.
     teams: [Account; 2],
@@ -85,9 +89,9 @@ impl Account {
     }
 }
 
-impl Finder {
+impl RefereeEventFinder {
     /// Events in a packet that came at `at_s`.
-    pub(crate) fn read(&mut self, packet: &Referee, at_s: f64, into: &mut Vec<MatchEvent>) {
+    pub fn read(&mut self, packet: &Referee, at_s: f64, into: &mut Vec<RefereeEvent>) {
         let now = Last {
             command: packet.command,
             counter: packet.command_counter,
@@ -96,9 +100,13 @@ impl Finder {
             teams: [Account::of(&packet.yellow), Account::of(&packet.blue)],
         };
         let before = self.last.replace(now.clone());
-        let mut line = |kind, name, description| into.push(MatchEvent { at_s, kind, name, description });
+        let mut line = |kind, name, description| into.push(RefereeEvent { at_s, kind, name, description });
         if before.as_ref().is_none_or(|before| before.stage != now.stage) {
-            line(Kind::Stage, number_name(packet.stage, Stage::try_from(packet.stage).ok()), String::new());
+            line(
+                RefereeEventKind::Stage,
+                number_name(packet.stage, Stage::try_from(packet.stage).ok()),
+                String::new(),
+            );
         }
         let same = |before: &Last| (before.command, before.counter) == (now.command, now.counter);
         let commanded = !before.as_ref().is_some_and(same);
@@ -107,12 +115,12 @@ impl Finder {
             let again = before.as_ref().is_some_and(|before| before.command == now.command);
             let again = if again { ", once more" } else { "" };
             let at = now.place.map(|place| format!(", the ball to {}", in_metres(place))).unwrap_or_default();
-            line(Kind::Command, name, format!("number {}{again}{at}", now.counter));
+            line(RefereeEventKind::Command, name, format!("number {}{again}{at}", now.counter));
         } else if let Some(place) = now.place
             && before.as_ref().is_some_and(|before| before.place != now.place)
         {
             line(
-                Kind::DesignatedPosition,
+                RefereeEventKind::DesignatedPosition,
                 "DESIGNATED_POSITION".to_owned(),
                 format!("the ball to {}", in_metres(place)),
             );
@@ -122,32 +130,44 @@ impl Finder {
             if self.events.len() < EVENTS_MAX && self.events.insert(identity) {
                 let kind = event.r#type.unwrap_or_default();
                 let name = number_name(kind, GameEventType::try_from(kind).ok());
-                line(Kind::GameEvent, name, event.origin.join(", "));
+                line(RefereeEventKind::GameEvent, name, event.origin.join(", "));
             }
         }
         let Some(before) = before else { return };
         let [yellow, blue] = [now.teams[0].score, now.teams[1].score];
         for (colour, (before, now)) in ["yellow", "blue"].iter().zip(before.teams.iter().zip(&now.teams)) {
             if now.score > before.score {
-                line(Kind::Goal, "GOAL".to_owned(), format!("{colour}, blue {blue} : {yellow} yellow"));
+                line(
+                    RefereeEventKind::Goal,
+                    "GOAL".to_owned(),
+                    format!("{colour}, blue {blue} : {yellow} yellow"),
+                );
             }
             if now.yellow_cards > before.yellow_cards {
-                line(Kind::Card, "YELLOW_CARD".to_owned(), format!("{colour}, {} in all", now.yellow_cards));
+                line(
+                    RefereeEventKind::Card,
+                    "YELLOW_CARD".to_owned(),
+                    format!("{colour}, {} in all", now.yellow_cards),
+                );
             }
             if now.red_cards > before.red_cards {
-                line(Kind::Card, "RED_CARD".to_owned(), format!("{colour}, {} in all", now.red_cards));
+                line(
+                    RefereeEventKind::Card,
+                    "RED_CARD".to_owned(),
+                    format!("{colour}, {} in all", now.red_cards),
+                );
             }
             if let Some(max_bots) = now.max_bots.filter(|_| now.max_bots != before.max_bots) {
-                line(Kind::MaxBots, "MAX_BOTS".to_owned(), format!("{colour}, {max_bots}"));
+                line(RefereeEventKind::MaxBots, "MAX_BOTS".to_owned(), format!("{colour}, {max_bots}"));
             }
             if now.name != before.name {
-                line(Kind::TeamName, "TEAM_NAME".to_owned(), format!("{colour}, {}", now.name));
+                line(RefereeEventKind::TeamName, "TEAM_NAME".to_owned(), format!("{colour}, {}", now.name));
             }
         }
     }
 }
 
-/// Where the ball is to be placed, mm, where the command is such that the place counts (README of `ssl`, trap
+/// Place for the ball, mm, where the command is such that the place counts (README of `ssl`, trap
 /// 3).
 fn place(packet: &Referee) -> Option<[i32; 2]> {
     let placing = matches!(
@@ -162,9 +182,9 @@ fn in_metres([x, y]: [i32; 2]) -> String {
     format!("({:.2}, {:.2}) m", f64::from(x) * 1e-3, f64::from(y) * 1e-3)
 }
 
-impl MatchEvent {
+impl RefereeEvent {
     /// A line for the operator; text of the referee's program is quoted in it.
-    pub(super) fn line(&self) -> String {
+    pub fn line(&self) -> String {
         let description = if self.description.is_empty() {
             String::new()
         } else {
@@ -194,10 +214,10 @@ fn screaming(name: &str) -> String {
     out
 }
 
-/// Whether a search text matches an event: the start of its name, without regard to case and dashes.
-pub(crate) fn is_meant(match_event: &MatchEvent, label: &str) -> bool {
+/// True if a search text matches an event: the start of its name, without regard to case and dashes.
+pub fn is_meant(event: &RefereeEvent, label: &str) -> bool {
     let plain = |text: &str| text.replace(['-', ' '], "_").to_ascii_uppercase();
-    match_event.name.starts_with(&plain(label))
+    event.name.starts_with(&plain(label))
 }
 
 #[cfg(test)]
@@ -214,7 +234,7 @@ mod tests {
 
     #[test]
     fn each_thing_is_reported_once() {
-        let (mut finder, mut found) = (Finder::default(), Vec::new());
+        let (mut finder, mut found) = (RefereeEventFinder::default(), Vec::new());
         for (at, packet) in [
             (0.0, packet(Command::Halt, 1, 0)),
             (0.1, packet(Command::Halt, 1, 0)),
@@ -239,7 +259,7 @@ mod tests {
 
     #[test]
     fn cards_names_robots_allowed_and_places_are_reported_when_they_change() {
-        let (mut finder, mut found) = (Finder::default(), Vec::new());
+        let (mut finder, mut found) = (RefereeEventFinder::default(), Vec::new());
         let mut placing = packet(Command::BallPlacementBlue, 5, 0);
         placing.designated_position = Some(Point { x: 1200.0, y: -450.0 });
         finder.read(&placing, 0.0, &mut found);
@@ -255,7 +275,7 @@ mod tests {
         (stop.blue, stop.yellow) = (moved.blue.clone(), moved.yellow.clone());
         stop.designated_position = moved.designated_position;
         finder.read(&stop, 3.0, &mut found);
-        let reported: Vec<_> = found.iter().skip(1).map(MatchEvent::line).collect();
+        let reported: Vec<_> = found.iter().skip(1).map(RefereeEvent::line).collect();
         assert_eq!(
             reported,
             [
@@ -272,7 +292,7 @@ mod tests {
 
     #[test]
     fn a_name_is_meant_by_its_begin_in_any_writing() {
-        let (mut finder, mut found) = (Finder::default(), Vec::new());
+        let (mut finder, mut found) = (RefereeEventFinder::default(), Vec::new());
         finder.read(&packet(Command::PrepareKickoffBlue, 1, 0), 0.0, &mut found);
         assert!(is_meant(&found[1], "prepare-kickoff") && is_meant(&found[1], "PREPARE_KICKOFF_BLUE"));
         assert!(!is_meant(&found[1], "kickoff") && !is_meant(&found[1], "prepare_penalty"));

@@ -1,0 +1,24 @@
+//! `failure`: why `onetwo simulate` cannot start, and how to fix it.
+
+use std::io;
+use std::net::SocketAddr;
+
+use rules::League;
+use thiserror::Error;
+
+/// Why the verb ends.
+#[derive(Debug, Error)]
+pub(super) enum SimulateError {
+    /// `--assistant` or `--autoref` beside the internal referee.
+    #[error(
+        "--assistant and --autoref serve a game controller elsewhere, and the internal referee needs neither; add \
+         --referee none, or the ADDRESS:PORT of its packets"
+    )]
+    InternalReferee,
+    /// A league without wheels.
+    #[error("{} is not played on wheels", .0.name())]
+    NotOnWheels(League),
+    /// The ports of `--sync` cannot be had.
+    #[error("--sync {0}: {1}; it and the next port must be free")]
+    Sync(SocketAddr, io::Error),
+}
