@@ -5,16 +5,25 @@
 //! the loop that feeds it what arrives and sends its output. Nothing that is missing ends the program: it
 //! reports what it waits for, and goes on when that arrives.
 
+#[path = "../../../src/run/alarms.rs"]
 mod alarms;
+#[path = "operator.rs"]
 mod board;
+#[path = "../../../src/run/event_loop.rs"]
 mod event_loop;
 mod failure;
+#[path = "../../../src/run/inbox.rs"]
 mod inbox;
+#[path = "../../../src/run/port_for_teams.rs"]
 mod port_for_teams;
+#[path = "../../../src/run/radio_alarms.rs"]
 mod radio_alarms;
 mod terminal;
+#[path = "../../../src/run/threads.rs"]
 mod threads;
+#[path = "../../../src/run/tuning.rs"]
 mod tuning;
+#[path = "../../../src/run/watch.rs"]
 mod watch;
 
 use std::ffi::OsString;

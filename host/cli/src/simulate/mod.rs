@@ -5,13 +5,20 @@
 //! clock, and the internal referee. It goes on where a port is taken or a network is missing, and reports how
 //! to fix it.
 
+#[path = "../../../../hil-sim/src/small_size/network/autoref.rs"]
 mod autoref;
+#[path = "dashboard.rs"]
 mod board;
+#[path = "../../../../hil-sim/src/small_size/network/commanders.rs"]
 mod commanders;
+#[path = "../../../../hil-sim/src/small_size/network/controller.rs"]
 mod crew;
 mod failure;
+#[path = "../../../../hil-sim/src/small_size/network/ports.rs"]
 mod ports;
+#[path = "../../../../hil-sim/src/small_size/network/field_loop.rs"]
 mod server_loop;
+#[path = "../../../../hil-sim/src/small_size/network/sync.rs"]
 mod sync;
 
 use std::net::SocketAddr;
