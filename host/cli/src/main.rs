@@ -11,13 +11,9 @@ mod control;
 mod evaluate;
 mod failure;
 mod firmware;
-#[path = "../../src/run/identity.rs"]
-mod identity;
 mod library;
 #[cfg(feature = "manuals")]
 mod manuals;
-#[path = "../../../protocol/ssl/src/net/endpoint.rs"]
-mod net;
 mod output;
 mod picture;
 mod play;

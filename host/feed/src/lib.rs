@@ -47,7 +47,7 @@ pub use gauges::tick;
 pub use ledger_feed::LedgerFeed;
 pub use legged::Legged;
 pub use match_runner::{End, MatchObserver, MatchRunner, RunSettings, command_of};
-pub use parameter_feed::{ParameterFeed, change_of, description_of, description_of_test, test_of};
+pub use parameter_feed::{ParameterFeed, change_of, test_of};
 pub use snapshots::{SnapshotRequest, Snapshots};
 pub use workbench::{SharedLibrary, refusals};
 

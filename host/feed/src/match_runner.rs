@@ -17,6 +17,7 @@ use arena::game::{Game, GameConfig, GameError, GameReport, TICK_US, Watcher, Wat
 use foreign::{excerpt, printable};
 use geometry::Point;
 use hil_sim::NativeBackend;
+use host::run::change_text;
 use page::{MatchEnd, MatchEvent, Page, ProgramLog, UserRequest};
 use protocol::{RobotId, Who};
 use rules::Colour;
@@ -27,7 +28,7 @@ use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
 use super::{
     Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, SnapshotRequest, Snapshots, change_of,
-    colour, description_of, description_of_test, test_of,
+    colour, test_of,
 };
 use crate::workbench::SharedLibrary;
 
@@ -363,7 +364,7 @@ fn tell_host(
             let team = colour(*team);
             change_of(key, *robot, value.as_ref()).and_then(|change| {
                 game.change(team, &change, watchers).map_err(|refused| refused.to_string())?;
-                Ok(format!("{}: {}", team.label(), description_of(&change)))
+                Ok(format!("{}: {}", team.label(), change_text(&change)))
             })
         }
         UserRequest::Kicks { team, robot, kicks } => tests

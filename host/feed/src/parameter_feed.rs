@@ -136,25 +136,7 @@ pub fn change_of(
     Ok(ParameterChange { key: key.to_owned(), robot, value: value.transpose()? })
 }
 
-/// A change in words, for the page's events and the log.
-pub fn description_of(change: &ParameterChange) -> String {
-    let robot = change.robot.map(|robot| format!(" of robot {robot}")).unwrap_or_default();
-    match &change.value {
-        Some(value) => format!("{}{robot} is now {value}, by hand", change.key),
-        None => format!("{}{robot} is as if left out, by hand", change.key),
-    }
-}
-
 /// The test that a viewer asks for.
 pub fn test_of(robot: Option<u8>, kicks: u8) -> TestOrder {
     robot.map_or(TestOrder::End, |robot| TestOrder::Kick { robot, kicks })
-}
-
-/// A test in words, for the page's events and the log.
-pub fn description_of_test(order: TestOrder) -> String {
-    match order {
-        TestOrder::Kick { robot, kicks } => format!("the kicker of robot {robot} is tested, {kicks} kicks"),
-        TestOrder::Stand => "all robots stand while the other team tests a kicker".to_owned(),
-        TestOrder::End => "the test of a kicker has ended".to_owned(),
-    }
 }

@@ -1,25 +1,25 @@
 //! `alarms`: faults that an operator should act on now, for terminal and page. Each is printed at once, and
-//! again every [`AGAIN`] while it lasts. Times on the host's clock.
+//! again every [`REPEAT_AFTER`] while it lasts. Times on the host's clock.
 
-use host::Host;
-use host::sanity::{Finding, Sanity};
+use crate::Host;
+use crate::sanity::{Finding, Sanity};
 use protocol::{Duration, Instant};
 
 use super::inbox::Dropped;
 
 /// An alarm that lasts is printed again after this.
-const AGAIN: Duration = Duration::millis(10_000);
+const REPEAT_AFTER: Duration = Duration::millis(10_000);
 /// A robot that was missing for longer than this counts as a new one.
-const FORGOTTEN: Duration = Duration::millis(10_000);
+const FORGOTTEN_AFTER: Duration = Duration::millis(10_000);
 /// Drops and the line's lateness are displayed for this long after the last one.
-const LASTS: Duration = Duration::millis(3_000);
+const SHOWN_FOR: Duration = Duration::millis(3_000);
 
 /// Something that is wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Alarm {
     /// What the alarm is about: its text changes with the figures, this key does not.
     matter: String,
-    description: String,
+    text: String,
     /// It is printed again while it lasts.
     repeats: bool,
 }
@@ -44,13 +44,13 @@ impl Alarms {
     }
 
     /// Records that the robots' line is too slow.
-    pub(super) fn slow(&mut self, now: Instant, description: String) {
-        self.slow = Some((description, now));
+    pub(super) fn slow(&mut self, now: Instant, text: String) {
+        self.slow = Some((text, now));
     }
 
     /// Records that an answer of the team's own strategy was refused.
-    pub(super) fn bad_answer(&mut self, now: Instant, description: String) {
-        self.bad_answer = Some((description, now));
+    pub(super) fn bad_answer(&mut self, now: Instant, text: String) {
+        self.bad_answer = Some((text, now));
     }
 
     /// Current faults, for the page.
@@ -69,13 +69,13 @@ impl Alarms {
         let mut alarms: Vec<_> = (host.listener().warnings(now).iter())
             .map(|warning| Alarm {
                 matter: warning.matter(),
-                description: format!("referee  {warning}"),
+                text: format!("referee  {warning}"),
                 repeats: warning.is_urgent(),
             })
             .collect();
         alarms.extend(self.sanity.look(now, host).into_iter().map(|finding| Alarm {
             matter: finding.matter(),
-            description: match finding {
+            text: match finding {
                 Finding::VisionPort(_) => format!("vision   {finding} [{}]", vision()),
                 _ => format!("{:<8} {finding}", finding.heading()),
             },
@@ -83,10 +83,10 @@ impl Alarms {
         }));
         alarms.extend(self.drops(now, dropped));
         for (matter, fault) in [("line", &self.slow), ("strategy", &self.bad_answer)] {
-            let lasting = fault.as_ref().filter(|(_, at)| now.since(*at) < LASTS);
-            alarms.extend(lasting.map(|(description, _)| Alarm {
+            let lasting = fault.as_ref().filter(|(_, at)| now.since(*at) < SHOWN_FOR);
+            alarms.extend(lasting.map(|(text, _)| Alarm {
                 matter: matter.to_owned(),
-                description: description.clone(),
+                text: text.clone(),
                 repeats: true,
             }));
         }
@@ -128,29 +128,29 @@ impl Alarms {
                 None => self.drops.push((what, after - before, now)),
             }
         }
-        self.drops.retain(|(_, _, at)| now.since(*at) < LASTS);
+        self.drops.retain(|(_, _, at)| now.since(*at) < SHOWN_FOR);
         let alarm = |(what, number, _): &(&str, u64, Instant)| Alarm {
             matter: (*what).to_owned(),
-            description: format!("network  {number} {what}; does another program flood the port?"),
+            text: format!("network  {number} {what}; does another program flood the port?"),
             repeats: true,
         };
         self.drops.iter().map(alarm).collect()
     }
 
     fn print(&mut self, now: Instant, alarms: Vec<Alarm>) -> Vec<String> {
-        self.printed.retain(|(_, seen, _)| now.since(*seen) < FORGOTTEN);
-        self.now = alarms.iter().map(|alarm| alarm.description.clone()).collect();
+        self.printed.retain(|(_, seen, _)| now.since(*seen) < FORGOTTEN_AFTER);
+        self.now = alarms.iter().map(|alarm| alarm.text.clone()).collect();
         let mut lines = Vec::new();
-        for Alarm { matter, description, repeats } in alarms {
+        for Alarm { matter, text, repeats } in alarms {
             if let Some((_, seen, last)) = self.printed.iter_mut().find(|(known, ..)| *known == matter) {
                 *seen = now;
-                if repeats && now.since(*last) >= AGAIN {
+                if repeats && now.since(*last) >= REPEAT_AFTER {
                     *last = now;
-                    lines.push(description);
+                    lines.push(text);
                 }
             } else {
                 self.printed.push((matter, now, now));
-                lines.push(description);
+                lines.push(text);
             }
         }
         lines
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
 
     fn alarm(repeats: bool) -> Vec<Alarm> {
-        vec![Alarm { matter: "m".into(), description: "w".into(), repeats }]
+        vec![Alarm { matter: "m".into(), text: "w".into(), repeats }]
     }
 
     #[test]
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(alarms.drops(Instant(0), dropped(0)).len(), 0);
         alarms.drops(Instant(100_000), dropped(5));
         let now = alarms.drops(Instant(200_000), dropped(12));
-        assert!(now[0].description.contains("12 vision packets"), "{now:?}");
-        assert!(alarms.drops(Instant(200_000) + LASTS, dropped(12)).is_empty());
+        assert!(now[0].text.contains("12 vision packets"), "{now:?}");
+        assert!(alarms.drops(Instant(200_000) + SHOWN_FOR, dropped(12)).is_empty());
     }
 }

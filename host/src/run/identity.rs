@@ -5,13 +5,13 @@
 use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use host::config::{RobotLink, TeamConfig};
-use host::shell::{epoch, key};
+use crate::config::{RobotLink, TeamConfig};
+use crate::shell::epoch::{self, Epoch};
+use crate::shell::key;
 use protocol::frame::TeamKey;
 use thiserror::Error;
 
-use crate::Failure;
-use crate::output::note;
+use super::{Operator, RunError};
 
 /// Real robots, and a key that is public: that of the file, or none given.
 #[derive(Debug, Error)]
@@ -24,15 +24,15 @@ use crate::output::note;
         None => "there is no --key-file, and the key of zeros is public".to_owned(),
     }
 )]
-pub(crate) struct PublicKey {
+pub struct PublicKey {
     /// The link as in `--robots`.
-    pub(crate) link: String,
+    pub link: String,
     /// `--key-file`.
-    pub(crate) file: Option<PathBuf>,
+    pub file: Option<PathBuf>,
 }
 
 /// The team's key: the file's, or zeros where that is allowed.
-pub(crate) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
+pub(super) fn team_key(config: &TeamConfig, operator: &mut dyn Operator) -> Result<TeamKey, RunError> {
     let read = config.key_file.as_deref().map(key::read).transpose()?;
     let key = read.as_ref().map_or(TeamKey::ZERO, |read| read.key);
     let link = match &config.robots {
@@ -44,23 +44,22 @@ pub(crate) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
         return Err(PublicKey { link, file: config.key_file.clone() }.into());
     }
     if let Some(warning) = read.and_then(|read| read.warning) {
-        note!("warning: {warning}");
+        operator.line(format!("warning: {warning}"));
     }
     Ok(key)
 }
 
 /// This start's epoch. Robots in a simulator start with their host, so nothing is kept for them.
-pub(crate) fn this_epoch(config: &TeamConfig) -> u32 {
-    if matches!(config.robots, RobotLink::Simulator(_)) { calendar() } else { real_epoch() }
+pub(super) fn this_epoch(config: &TeamConfig) -> Epoch {
+    if matches!(config.robots, RobotLink::Simulator(_)) {
+        return Epoch { epoch: calendar(), warning: None };
+    }
+    real_epoch()
 }
 
 /// This start's epoch for real robots, greater than all before.
-pub(crate) fn real_epoch() -> u32 {
-    let epoch = epoch::next(epoch::state_directory().as_deref(), calendar());
-    if let Some(warning) = epoch.warning {
-        note!("warning: {warning}");
-    }
-    epoch.epoch
+pub fn real_epoch() -> Epoch {
+    epoch::next(epoch::state_directory().as_deref(), calendar())
 }
 
 /// Seconds since 1970.
@@ -72,7 +71,13 @@ fn calendar() -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use host::config::TeamSettings;
+    use crate::config::TeamSettings;
+
+    struct NoOperator;
+
+    impl Operator for NoOperator {
+        fn line(&mut self, _line: String) {}
+    }
 
     fn key_for(robots: &str, key: Option<&str>, insecure: bool) -> Result<TeamKey, String> {
         let path = std::env::temp_dir().join(format!(
@@ -89,7 +94,8 @@ mod tests {
             insecure_zero_key: Some(insecure),
             ..TeamSettings::default()
         };
-        let found = team_key(&settings.complete().unwrap()).map_err(|failure| failure.to_string());
+        let found =
+            team_key(&settings.complete().unwrap(), &mut NoOperator).map_err(|failure| failure.to_string());
         let _ = std::fs::remove_file(path);
         found
     }

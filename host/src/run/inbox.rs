@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use host::referee::SenderAddress;
+use crate::referee::SenderAddress;
 use protocol::link::Packet;
 
 /// The longest datagram of vision, bytes: a camera frame of 32 robots, 100 balls and the field's geometry has
@@ -64,12 +64,17 @@ pub(super) enum Mail {
     Robot(Packet),
     /// An answer of the team's own strategy.
     Orders(String),
-    /// How a source is received now.
-    Open(Source, String),
+    /// A source is received now.
+    Opened {
+        /// The source.
+        source: Source,
+        /// Interfaces or port that it is received on.
+        route: String,
+    },
     /// Why a source cannot be received.
     Trouble(Source, String),
     /// A line for the operator.
-    Label(String),
+    Note(String),
     /// The robots' line is too slow, with the rate it would need.
     Slow(String),
 }

@@ -9,8 +9,8 @@ use std::sync::mpsc::Receiver;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use crate::referee::team_port::{TeamPort, TeamPortEvent, TeamPortRequest};
 use foreign::excerpt;
-use host::referee::team_port::{TeamPort, TeamPortEvent, TeamPortRequest};
 use protocol::RobotId;
 use rules::Colour;
 
@@ -18,9 +18,9 @@ use super::inbox::{Inbox, Mail};
 use super::threads::sleep;
 
 /// Longest time that reading an open connection may block before the clock is checked.
-const WAIT: Duration = Duration::from_millis(100);
+const READ_WAIT: Duration = Duration::from_millis(100);
 /// Time for a connection attempt; without an answer by then the controller counts as absent.
-const CONNECT: Duration = Duration::from_secs(1);
+const CONNECT_TIME: Duration = Duration::from_secs(1);
 
 /// Registers us, asks for our keeper, and for what the host asks by `asked`.
 pub(super) fn talk(
@@ -57,22 +57,22 @@ pub(super) fn talk(
                 let description = description(&event, address);
                 // An absent controller is reported once.
                 if description.is_some() && description != last {
-                    mail.put(Mail::Label(description.clone().unwrap_or_default()));
+                    mail.put(Mail::Note(description.clone().unwrap_or_default()));
                     last = description;
                 }
             }
             if stream.is_none() {
-                sleep(WAIT, &end);
+                sleep(READ_WAIT, &end);
             }
         }
     })
 }
 
 fn connect(address: SocketAddr) -> Option<TcpStream> {
-    let stream = TcpStream::connect_timeout(&address, CONNECT).ok()?;
+    let stream = TcpStream::connect_timeout(&address, CONNECT_TIME).ok()?;
     stream.set_nodelay(true).ok()?;
-    stream.set_read_timeout(Some(WAIT)).ok()?;
-    stream.set_write_timeout(Some(CONNECT)).ok()?;
+    stream.set_read_timeout(Some(READ_WAIT)).ok()?;
+    stream.set_write_timeout(Some(CONNECT_TIME)).ok()?;
     Some(stream)
 }
 

@@ -1,11 +1,11 @@
 //! `radio_alarms`: robots that refuse this host, or that it refuses, for terminal and page: at once, and
-//! again every [`AGAIN`] while it lasts. Times on the host's clock.
+//! again every [`REPEAT_AFTER`] while it lasts. Times on the host's clock.
 
-use host::radio::{Radio, RadioWarning};
+use crate::radio::{Radio, RadioWarning};
 use protocol::{Duration, Instant};
 
 /// A lasting problem is reported again after this.
-const AGAIN: Duration = Duration::millis(10_000);
+const REPEAT_AFTER: Duration = Duration::millis(10_000);
 
 /// What was reported, and when.
 #[derive(Debug, Default)]
@@ -17,11 +17,11 @@ impl RadioAlarms {
     /// The lines to print now.
     pub(super) fn look(&mut self, now: Instant, radio: &Radio) -> Vec<String> {
         let current: Vec<RadioWarning> = radio.warnings(now).collect();
-        self.message.retain(|(warning, at)| current.contains(warning) || now.since(*at) < AGAIN);
+        self.message.retain(|(warning, at)| current.contains(warning) || now.since(*at) < REPEAT_AFTER);
         let mut lines = Vec::new();
         for warning in current {
             match self.message.iter_mut().find(|(known, _)| *known == warning) {
-                Some((_, at)) if now.since(*at) < AGAIN => continue,
+                Some((_, at)) if now.since(*at) < REPEAT_AFTER => continue,
                 Some((_, at)) => *at = now,
                 None => self.message.push((warning, now)),
             }
@@ -34,7 +34,7 @@ impl RadioAlarms {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use host::radio::RadioSettings;
+    use crate::radio::RadioSettings;
     use protocol::frame::TeamKey;
     use protocol::host::Telemetry;
     use protocol::link::Link;

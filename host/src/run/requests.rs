@@ -1,47 +1,36 @@
-//! `requests`: what viewers of the page of `onetwo control` ask for: HALT, and where the operator allows it
-//! parameters and tests of kickers.
+//! `requests`: what an operator asks for while robots play: HALT, parameters, tests of kickers.
 
-use host::config::ParameterChange;
-use host::robot_test::TestOrder;
-use host::{Input, InputVerdict};
-use page::UserRequest;
+use super::Request;
+use super::event_loop::EventLoop;
+use crate::config::ParameterChange;
+use crate::robot_test::TestOrder;
+use crate::{Input, InputVerdict};
 
-use super::EventLoop;
-use crate::control::board::Board;
-use feed::{change_of, description_of, description_of_test, test_of};
-
-impl EventLoop {
-    /// Sends the scene to the page, and does what viewers ask for.
+impl EventLoop<'_> {
+    /// Shows the host to the operator, and does what is asked for.
     pub(super) fn show(&mut self) {
         let now = self.now();
-        let Some(board) = &mut self.board else { return };
         let alarms = [self.alarms.now(), self.watch.missing()].concat();
-        board.look(now, &self.host, alarms);
-        self.tuning.show(&self.host, board.page());
-        while let Some(request) = self.board.as_ref().and_then(Board::next_request) {
-            let refused = match request {
-                UserRequest::Halt {} => {
-                    let description = "HALT was asked for on the page: the robots stand until the end";
-                    self.description.push(description.to_owned());
+        self.operator.look(now, &self.host, alarms);
+        while let Some(request) = self.operator.next_request() {
+            let done = match request {
+                Request::Halt => {
                     self.feed(now, Input::Halt);
-                    None
+                    Ok("HALT was asked for on the page: the robots stand until the end".to_owned())
                 }
-                UserRequest::Parameter { key, robot, value, .. } => {
-                    change_of(&key, robot, value.as_ref()).and_then(|change| self.change(change)).err()
-                }
-                UserRequest::Kicks { robot, kicks, .. } => self.test(test_of(robot, kicks)).err(),
-                UserRequest::Save {} => self.tuning.save().map(|told| self.description.push(told)).err(),
-                // Requests for a simulation are refused when they are read.
-                _ => None,
+                Request::Change(change) => self.change(change),
+                Request::Test(order) => self.test(order),
+                Request::Save => self.tuning.save(),
             };
-            if let (Some(description), Some(board)) = (refused, &self.board) {
-                board.page().refuse(description);
+            match done {
+                Ok(line) => self.lines.push(line),
+                Err(reason) => self.operator.refuse(reason),
             }
         }
     }
 
-    /// Changes a parameter; an error says why it stays as it is.
-    fn change(&mut self, change: ParameterChange) -> Result<(), String> {
+    /// Changes a parameter; a line that says so, or why it stays as it is.
+    fn change(&mut self, change: ParameterChange) -> Result<String, String> {
         self.tuning.check(&self.host, &change)?;
         let now = self.now();
         if let InputVerdict::NotChanged(refused) =
@@ -49,18 +38,36 @@ impl EventLoop {
         {
             return Err(refused.to_string());
         }
-        self.description.push(format!("parameter  {}", description_of(&change)));
+        let line = format!("parameter  {}", change_text(&change));
         self.tuning.keep(change);
-        Ok(())
+        self.operator.changed();
+        Ok(line)
     }
 
-    /// Begins or ends the test of a kicker; an error says why not.
-    fn test(&mut self, order: TestOrder) -> Result<(), String> {
+    /// Starts or ends the test of a kicker; a line that says so, or why not.
+    fn test(&mut self, order: TestOrder) -> Result<String, String> {
         let now = self.now();
         if let InputVerdict::NoTest(refused) = self.feed(now, Input::Test(order.to_json().as_bytes())) {
             return Err(refused.to_string());
         }
-        self.description.push(format!("test       {}", description_of_test(order)));
-        Ok(())
+        Ok(format!("test       {}", test_text(order)))
+    }
+}
+
+/// A change in words, for events and logs.
+pub fn change_text(change: &ParameterChange) -> String {
+    let robot = change.robot.map(|robot| format!(" of robot {robot}")).unwrap_or_default();
+    match &change.value {
+        Some(value) => format!("{}{robot} is now {value}, by hand", change.key),
+        None => format!("{}{robot} is as if left out, by hand", change.key),
+    }
+}
+
+/// A test in words, for events and logs.
+pub fn test_text(order: TestOrder) -> String {
+    match order {
+        TestOrder::Kick { robot, kicks } => format!("the kicker of robot {robot} is tested, {kicks} kicks"),
+        TestOrder::Stand => "all robots stand while the other team tests a kicker".to_owned(),
+        TestOrder::End => "the test of a kicker has ended".to_owned(),
     }
 }

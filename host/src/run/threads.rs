@@ -8,17 +8,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use host::external::StrategyLink as _;
-use host::shell::{LineRate, Link, OutCounts, Outbox, StrategyProcess};
-use ssl::net::{Datagram, Interfaces};
+use crate::external::StrategyLink as _;
+use crate::shell::{LineRate, Link, OutCounts, Outbox, StrategyProcess};
+use ssl::net::{Datagram, Interfaces, NetReceiver};
 
 use super::inbox::{Inbox, Mail, REFEREE_LEN_MAX, Source, VISION_LEN_MAX};
-use crate::net::NetReceiver;
 
 /// A thread checks this often whether to end.
-const LOOK: Duration = Duration::from_millis(100);
+const END_CHECK: Duration = Duration::from_millis(100);
 /// A socket that could not be opened is tried again after this.
-const AGAIN: Duration = Duration::from_secs(1);
+const REOPEN_AFTER: Duration = Duration::from_secs(1);
 /// A link that fails repeatedly is reported this often.
 const TROUBLE_EVERY: Duration = Duration::from_secs(10);
 /// The link's thread waits at most this long for robots before it checks for frames to send: a tenth of a
@@ -28,11 +27,11 @@ const LINK_WAIT: Duration = Duration::from_millis(1);
 /// Whether a line keeps up is checked this often.
 const PACE_EVERY: Duration = Duration::from_secs(1);
 /// One in this number of snapshots may be replaced by a newer one: threads are late now and then.
-const SPARED: u64 = 20;
-/// Bit rates of usual adapters, bit/s.
-const RATES: [u64; 7] = [115_200, 230_400, 460_800, 921_600, 1_000_000, 2_000_000, 3_000_000];
+const SUPERSEDED_ONE_IN: u64 = 20;
+/// Bit rates that adapters offer, bit/s.
+const LINE_RATES: [u64; 7] = [115_200, 230_400, 460_800, 921_600, 1_000_000, 2_000_000, 3_000_000];
 /// Time for the last frames to be sent at the end.
-const AT_END: Duration = Duration::from_millis(200);
+const FLUSH_TIME: Duration = Duration::from_millis(200);
 
 /// Receives on `address` until `end`.
 pub(super) fn receive(
@@ -53,14 +52,14 @@ pub(super) fn receive(
                         mail.put(Mail::Trouble(source, description.clone()));
                         reported = Some(description);
                     }
-                    sleep(AGAIN, &end);
+                    sleep(REOPEN_AFTER, &end);
                     continue;
                 }
             };
             reported = None;
-            mail.put(Mail::Open(source, receiver.description()));
+            mail.put(Mail::Opened { source, route: receiver.route() });
             while !end.load(Ordering::Relaxed) {
-                match receiver.receive(LOOK) {
+                match receiver.receive(END_CHECK) {
                     Ok(Some(datagram)) => match letter(source, datagram) {
                         Some(letter) => mail.put(letter),
                         None => mail.refuse(source),
@@ -68,7 +67,7 @@ pub(super) fn receive(
                     Ok(None) => {}
                     Err(error) => {
                         mail.put(Mail::Trouble(source, error.to_string()));
-                        sleep(AGAIN, &end);
+                        sleep(REOPEN_AFTER, &end);
                         break;
                     }
                 }
@@ -87,7 +86,7 @@ pub(super) fn ask_strategy(
     thread::spawn(move || {
         let mut starts = strategy.starts();
         while !end.load(Ordering::Relaxed) {
-            let view = match views.recv_timeout(LOOK) {
+            let view = match views.recv_timeout(END_CHECK) {
                 Ok(view) => view,
                 Err(RecvTimeoutError::Timeout) => continue,
                 Err(RecvTimeoutError::Disconnected) => return,
@@ -98,13 +97,13 @@ pub(super) fn ask_strategy(
             if let Some(answer) = strategy.answer(&newest) {
                 mail.put(Mail::Orders(answer));
             } else if ran {
-                mail.put(Mail::Label(
+                mail.put(Mail::Note(
                     "strategy  the program ended or does not answer; it is started again".to_owned(),
                 ));
             }
             if strategy.starts() != starts {
                 starts = strategy.starts();
-                mail.put(Mail::Label(format!("strategy  started again, {} times by now", starts - 1)));
+                mail.put(Mail::Note(format!("strategy  started again, {} times by now", starts - 1)));
             }
         }
     })
@@ -145,17 +144,17 @@ pub(super) fn carry(
                 Ok(Some(packet)) => mail.put(Mail::Robot(packet)),
                 Err(error) => {
                     note(Err(error.to_string()));
-                    thread::sleep(LOOK);
+                    thread::sleep(END_CHECK);
                 }
             }
             while let Some(description) = link.notice() {
-                mail.put(Mail::Label(description));
+                mail.put(Mail::Note(description));
             }
             if let Some(description) = pace.look(&*link, &frames) {
                 mail.put(Mail::Slow(description));
             }
         }
-        let until = Instant::now() + AT_END;
+        let until = Instant::now() + FLUSH_TIME;
         while look_at(&frames).waiting() > 0 && Instant::now() < until {
             let _ = send(&mut *link, &frames);
             thread::sleep(LINK_WAIT);
@@ -210,16 +209,16 @@ impl Pace {
     }
 }
 
-/// A message for a line that dropped more than one in [`SPARED`] of its snapshots between two counts.
+/// A message for a line that dropped more than one in [`SUPERSEDED_ONE_IN`] of its snapshots between two counts.
 fn too_slow(line: &LineRate, before: OutCounts, counts: OutCounts, passed: Duration) -> Option<String> {
     let lost = counts.superseded - before.superseded;
     let offered = counts.snapshots - before.snapshots;
-    if lost <= offered / SPARED {
+    if lost <= offered / SUPERSEDED_ONE_IN {
         return None;
     }
     let in_a_second = |number: u64| (number as f64 / passed.as_secs_f64()) as u64;
     let needed = in_a_second(LineRate::needed(counts.frames - before.frames, counts.bytes - before.bytes));
-    let rate = RATES.into_iter().find(|rate| *rate >= needed);
+    let rate = LINE_RATES.into_iter().find(|rate| *rate >= needed);
     let remedy = rate.map_or_else(
         || "no usual rate is enough: use fewer robots, or udp://".to_owned(),
         |rate| format!("set the base station and --robots serial:{}:{rate}", line.device),
@@ -235,7 +234,7 @@ fn too_slow(line: &LineRate, before: OutCounts, counts: OutCounts, passed: Durat
 pub(super) fn sleep(time: Duration, end: &AtomicBool) {
     let mut left = time;
     while !left.is_zero() && !end.load(Ordering::Relaxed) {
-        let now = left.min(LOOK);
+        let now = left.min(END_CHECK);
         thread::sleep(now);
         left -= now;
     }

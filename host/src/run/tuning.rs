@@ -5,28 +5,26 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use host::Host;
-use host::config::{ParameterChange, TeamConfig};
-use host::learned::Learned;
-use page::Page;
+use foreign::printable_path;
 
-use super::CONFIG_LEN_MAX;
-use crate::output::printable_path;
-use feed::ParameterFeed;
+use crate::Host;
+use crate::config::{ParameterChange, TeamConfig};
+use crate::learned::Learned;
+
+/// Longest file of settings that is read, bytes: one with every setting has 1 kB.
+pub const CONFIG_LEN_MAX: u64 = 1 << 20;
 
 /// The configuration that the program started with, and what was changed since.
 pub(super) struct Tuning {
     config: TeamConfig,
     file: Option<PathBuf>,
     changes: Vec<ParameterChange>,
-    feed: ParameterFeed,
 }
 
 impl Tuning {
     /// Nothing changed yet; `file` is the one of `--config`.
     pub(super) fn new(config: &TeamConfig, file: Option<&Path>) -> Self {
-        let (changes, feed) = (Vec::new(), ParameterFeed::default());
-        Self { config: config.clone(), file: file.map(Path::to_owned), changes, feed }
+        Self { config: config.clone(), file: file.map(Path::to_owned), changes: Vec::new() }
     }
 
     /// Checks a change against what the host plays by now; an error says why it is refused.
@@ -40,13 +38,6 @@ impl Tuning {
         let is_same = |had: &ParameterChange| (&had.key, had.robot) == (&change.key, change.robot);
         self.changes.retain(|had| !is_same(had));
         self.changes.push(change);
-        self.feed.hasten();
-    }
-
-    /// Sends the parameters to the page if they are due.
-    pub(super) fn show(&mut self, host: &Host, page: &Page) {
-        let name = self.file.as_deref().map(printable_path);
-        self.feed.look(&[host], Some((&self.config, name.as_deref())), page);
     }
 
     /// Writes what was changed into the team's file, whose comments and order stay; says what was done.
@@ -79,7 +70,7 @@ pub(super) fn keep_learned(path: &Path, learned: &Learned) -> String {
             Err(_) if !path.exists() => String::new(),
             Err(error) => return Err(io::Error::other(error.to_string())),
         };
-        replace(path, &host::learned::kept(&before, learned))
+        replace(path, &crate::learned::kept(&before, learned))
     };
     match write() {
         Ok(()) => format!("learned  what is known of kickers and ball is in {}", printable_path(path)),
@@ -102,7 +93,7 @@ mod tests {
     fn what_was_changed_is_saved_once_and_the_rest_of_the_file_stays() {
         let file = std::env::temp_dir().join(format!("onetwo-tuning-{}.toml", std::process::id()));
         fs::write(&file, "# our team\nkeeper = 2\n").unwrap();
-        let config = host::config::TeamSettings::default().complete().unwrap();
+        let config = crate::config::TeamSettings::default().complete().unwrap();
         let mut tuning = Tuning::new(&config, Some(&file));
         assert!(tuning.save().unwrap_err().contains("nothing was changed"));
         for value in [1.5, 1.7] {

@@ -1,21 +1,21 @@
 //! `watch`: what the host waits for, and what the operator should do about it; each reported once when it
 //! starts, and once when it is over.
 
-use host::Host;
-use host::config::TeamConfig;
-use host::referee::Silence;
+use crate::Host;
+use crate::config::TeamConfig;
+use crate::referee::Silence;
 use protocol::{Duration, Instant};
 
 use super::inbox::Source;
 
 /// A source is given this long after the start: messages come within 2 s, and a source that is there has had
 /// time to send.
-const AT_START: Duration = Duration::millis(1_000);
+const START_TIME: Duration = Duration::millis(1_000);
 /// Camera frames that arrive after a longer pause are reported; their absence is an alarm
 /// ([`super::alarms`]).
-const VISION_SILENT: Duration = Duration::millis(1_000);
+const VISION_SILENT_AFTER: Duration = Duration::millis(1_000);
 /// Robots take this long to boot where they are processes of ours.
-const ROBOTS_BOOT: Duration = Duration::millis(1_500);
+const ROBOTS_BOOT_TIME: Duration = Duration::millis(1_500);
 
 /// Which source was received when, and what was reported of it.
 #[derive(Debug)]
@@ -66,9 +66,9 @@ impl Watch {
     }
 
     /// A source cannot be received, with the reason.
-    pub(super) fn trouble(&mut self, source: Source, description: &str) -> String {
-        description.clone_into(&mut self.of(source).via);
-        format!("{}: {description}; it is tried again", source.name())
+    pub(super) fn trouble(&mut self, source: Source, reason: &str) -> String {
+        reason.clone_into(&mut self.of(source).via);
+        format!("{}: {reason}; it is tried again", source.name())
     }
 
     /// How vision is received, or why it cannot be.
@@ -90,21 +90,15 @@ impl Watch {
     }
 
     /// Reports which sources became missing or returned.
-    pub(super) fn look(
-        &mut self,
-        now: Instant,
-        host: &Host,
-        config: &TeamConfig,
-        description: &mut Vec<String>,
-    ) {
-        if now.0 < AT_START.0 {
+    pub(super) fn look(&mut self, now: Instant, host: &Host, config: &TeamConfig, lines: &mut Vec<String>) {
+        if now.0 < START_TIME.0 {
             return;
         }
         self.missing.clear();
-        let silent = host.imaged().is_none_or(|last| now.since(last) > VISION_SILENT);
+        let silent = host.imaged().is_none_or(|last| now.since(last) > VISION_SILENT_AFTER);
         let came =
             self.vision.see(silent, |_| String::new(), || format!("vision comes from {}", config.vision));
-        description.extend(came.filter(|description| !description.is_empty()));
+        lines.extend(came.filter(|line| !line.is_empty()));
         let silence = host.listener().silence(now);
         let waits = format!(
             "waiting for the referee at {} ({}): robots halt until then; is the game controller running, and publishes it there \
@@ -124,12 +118,12 @@ impl Watch {
                 )
             },
         );
-        description.extend(came.filter(|description| !description.is_empty()));
+        lines.extend(came.filter(|line| !line.is_empty()));
         let there: Vec<_> = host.radio().present(now).map(|robot| robot.number().to_string()).collect();
-        if !there.is_empty() || now.0 >= ROBOTS_BOOT.0 {
+        if !there.is_empty() || now.0 >= ROBOTS_BOOT_TIME.0 {
             let waits = format!("waiting for robots: none is received; {}", self.link_advice);
             self.missing.extend(there.is_empty().then(|| waits.clone()));
-            description.extend(self.robots.see(
+            lines.extend(self.robots.see(
                 there.is_empty(),
                 |_| waits,
                 || format!("robots are received: {}", there.join(" ")),

@@ -19,11 +19,11 @@ const RETRY_AFTER: Duration = Duration::from_secs(2);
 /// The controller answers within its tick of 25 ms; a loaded machine was seen to pause for 1.6 s.
 const REPLY_TIME: Duration = Duration::from_secs(3);
 /// An idle connection is checked this often for being alive.
-const IDLE: Duration = Duration::from_millis(200);
+const ALIVE_CHECK: Duration = Duration::from_millis(200);
 /// Events that wait for the connection; more are dropped.
 const WAITING_MAX: usize = 64;
 /// An event that waited longer is not reported: the game has moved on.
-const OLD_AFTER: Duration = Duration::from_secs(1);
+const REPORTED_WITHIN: Duration = Duration::from_secs(1);
 
 /// Reports events to a controller.
 #[derive(Debug)]
@@ -114,7 +114,7 @@ impl Talk {
         self.trouble = None;
         let _ = self.lines.send(format!("registered at {} as `{NAME}`", connection.peer()));
         loop {
-            let (since, event) = match self.events.recv_timeout(IDLE) {
+            let (since, event) = match self.events.recv_timeout(ALIVE_CHECK) {
                 Ok(event) => event,
                 Err(RecvTimeoutError::Disconnected) => return Ok(Ended),
                 Err(RecvTimeoutError::Timeout) => {
@@ -124,7 +124,7 @@ impl Talk {
                     continue;
                 }
             };
-            if since.elapsed() > OLD_AFTER {
+            if since.elapsed() > REPORTED_WITHIN {
                 continue;
             }
             let kind = name_of(&event);
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn a_controller_that_wants_a_signature_is_reported_of_with_the_remedy() {
+    fn a_controller_that_wants_a_signature_is_reported_with_the_remedy() {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let mut reporter = Reporter::new(&listener.local_addr().expect("an address").to_string());
         let _talk = shake_hands(&listener, StatusCode::Rejected);

@@ -10,11 +10,11 @@ use ssl::Message;
 use ssl::simulation::RobotControl;
 
 /// Changes of the sender are counted over this time.
-const WINDOW: Duration = Duration::from_secs(1);
+const COUNTED_OVER: Duration = Duration::from_secs(1);
 /// This number of changes in the window means two programs: a program that restarts changes the sender once.
-const MANY: usize = 5;
+const CHANGES_OF_TWO: usize = 5;
 /// A lasting conflict is reported again after this.
-const AGAIN: Duration = Duration::from_secs(10);
+const REPEAT_AFTER: Duration = Duration::from_secs(10);
 
 /// The sender of a robot's commands.
 #[derive(Debug)]
@@ -50,17 +50,17 @@ impl Commanders {
                 before: from,
                 changes: Vec::new(),
             });
-            robot.changes.retain(|at| now.saturating_sub(*at) < WINDOW);
+            robot.changes.retain(|at| now.saturating_sub(*at) < COUNTED_OVER);
             if robot.by != from {
                 robot.before = std::mem::replace(&mut robot.by, from);
                 robot.changes.push(now);
             }
-            if robot.changes.len() >= MANY {
+            if robot.changes.len() >= CHANGES_OF_TWO {
                 contested = Some((command.id, robot.before));
             }
         }
         let (id, other) = contested?;
-        if self.message.get(&team).is_some_and(|at| now.saturating_sub(*at) < AGAIN) {
+        if self.message.get(&team).is_some_and(|at| now.saturating_sub(*at) < REPEAT_AFTER) {
             return None;
         }
         self.message.insert(team, now);

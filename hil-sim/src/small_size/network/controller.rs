@@ -1,26 +1,25 @@
-//! `crew`: services for a match that an external game controller runs: its packets are received, an automatic
-//! referee reports to it (`--autoref`), and the human's tasks are done (`--assistant`).
+//! `controller`: a match that an external game controller runs: its packets are received, an automatic referee
+//! reports to it, and the human's tasks are done.
 
 use std::net::SocketAddr;
 use std::time::Duration;
 
-use hil_sim::small_size::referee::NoRules;
-use hil_sim::small_size::referee::remote::{Assistant, AutoReferee, Decider, RemoteMatch};
-use hil_sim::small_size::{PhysicsEvent, World};
-use rules::{Colour, League};
+use crate::small_size::referee::NoRules;
+use crate::small_size::referee::remote::{Assistant, AutoReferee, Decider, RemoteMatch};
+use crate::small_size::{PhysicsEvent, World};
+use rules::League;
 use ssl::Message;
-use ssl::net::Interfaces;
+use ssl::net::{Interfaces, NetReceiver};
 
 use super::autoref::Reporter;
-use crate::net::NetReceiver;
 
 /// A port or group that cannot be opened is tried again this often.
-const AGAIN: Duration = Duration::from_secs(1);
+const REOPEN_AFTER: Duration = Duration::from_secs(1);
 /// Most packets received in one step: a flood must not stop the world.
-const AT_ONCE: usize = 64;
+const PACKETS_MAX: usize = 64;
 
 /// The external controller's receiver, and the services for it.
-pub(super) struct Crew {
+pub(super) struct ExternalController {
     from: SocketAddr,
     receiver: Option<NetReceiver>,
     /// When opening the receiver was last tried, running time.
@@ -33,7 +32,7 @@ pub(super) struct Crew {
     autoref: Option<(AutoReferee, Reporter)>,
 }
 
-impl Crew {
+impl ExternalController {
     /// Receives the controller at `from`; `assistant` and `autoref` enable the services.
     pub(super) fn new(
         from: SocketAddr,
@@ -84,15 +83,17 @@ impl Crew {
         if self.silent { "no referee".to_owned() } else { self.game.phase().to_string() }
     }
 
-    /// Receives waiting packets; they go to `message`, lines for the operator to `lines`.
+    /// Receives waiting packets; they go to `packets`, lines for the operator to `lines`.
     pub(super) fn listen(
         &mut self,
         world: &World,
         running: Duration,
-        message: &mut Vec<Vec<u8>>,
+        packets: &mut Vec<Vec<u8>>,
         lines: &mut Vec<String>,
     ) {
-        if self.receiver.is_none() && self.tried.is_none_or(|tried| running.saturating_sub(tried) >= AGAIN) {
+        if self.receiver.is_none()
+            && self.tried.is_none_or(|tried| running.saturating_sub(tried) >= REOPEN_AFTER)
+        {
             self.tried = Some(running);
             match NetReceiver::open(self.from, &Interfaces::All) {
                 Ok(receiver) => {
@@ -107,11 +108,11 @@ impl Crew {
         }
         let (now, ball) = (time_of(world), world.ball.position);
         if let Some(receiver) = &mut self.receiver {
-            for _ in 0..AT_ONCE {
+            for _ in 0..PACKETS_MAX {
                 match receiver.receive(Duration::ZERO) {
                     Ok(Some(datagram)) => {
                         if let Ok(packet) = ssl::referee::Referee::decode(datagram.bytes) {
-                            message.push(datagram.bytes.to_vec());
+                            packets.push(datagram.bytes.to_vec());
                             self.game.receive(packet, now, ball);
                         }
                     }
@@ -151,9 +152,9 @@ impl Crew {
             }
         }
         if let Some(assistant) = &mut self.assistant {
-            for deed in assistant.look(&self.game, world) {
-                deed.order.carry_out(world);
-                lines.push(format!("assistant  {deed}"));
+            for action in assistant.look(&self.game, world) {
+                action.order.carry_out(world);
+                lines.push(format!("assistant  {action}"));
             }
         }
     }
@@ -165,20 +166,13 @@ const fn decider(assistant: bool) -> Decider {
 }
 
 /// The event as a line for the operator.
-fn line_of(event: &hil_sim::small_size::referee::RefereeEvent) -> String {
+fn line_of(event: &crate::small_size::referee::RefereeEvent) -> String {
     let by = match (event.by, event.robot) {
-        (Some(team), Some(robot)) => format!(" by {} {}", team_of(team), robot.number()),
-        (Some(team), None) => format!(" by {}", team_of(team)),
+        (Some(team), Some(robot)) => format!(" by {} {}", team.label(), robot.number()),
+        (Some(team), None) => format!(" by {}", team.label()),
         (None, _) => String::new(),
     };
     format!("{}{by} at ({:.2}, {:.2}) m", event.what.kind().label(), event.place.x(), event.place.y())
-}
-
-const fn team_of(team: Colour) -> &'static str {
-    match team {
-        Colour::Blue => "blue",
-        Colour::Yellow => "yellow",
-    }
 }
 
 fn time_of(world: &World) -> protocol::Instant {

@@ -4,28 +4,28 @@
 use std::net::{IpAddr, SocketAddr};
 use std::time::{Duration, Instant};
 
-use hil_sim::small_size::server::{self, Server};
+use crate::small_size::server::{self, Server};
 use rules::Colour;
 use ssl::net::Port;
 
 use super::commanders::Commanders;
 
 /// A port in use is tried again this often.
-const AGAIN: Duration = Duration::from_secs(1);
+const REOPEN_AFTER: Duration = Duration::from_secs(1);
 /// Most datagrams of one port between two steps: a flood of commands must not stop the world.
-const AT_ONCE: usize = 64;
+const DATAGRAMS_MAX: usize = 64;
 
 /// Sockets of the simulation protocol.
 #[derive(Debug)]
 pub(super) struct Ports {
-    doors: Vec<Group>,
+    ports: Vec<Socket>,
     tried: Instant,
     commanders: Commanders,
     began: Instant,
 }
 
 #[derive(Debug)]
-struct Group {
+struct Socket {
     port: server::Port,
     address: SocketAddr,
     socket: Option<Port>,
@@ -35,13 +35,13 @@ struct Group {
 impl Ports {
     /// Opens the ports that are free, and adds a message for each of the others.
     pub(super) fn open(listen: IpAddr, base: u16, legacy: Option<u16>, lines: &mut Vec<String>) -> Self {
-        let group = |offset: u16, port| {
+        let entry = |offset: u16, port| {
             let number = if base == 0 { 0 } else { base + offset };
-            Group { port, address: SocketAddr::new(listen, number), socket: None, troubled: false }
+            Socket { port, address: SocketAddr::new(listen, number), socket: None, troubled: false }
         };
         let teams = [Colour::Blue, Colour::Yellow].map(server::Port::Team);
         let mut ports = Self {
-            doors: vec![group(0, server::Port::Simulator), group(1, teams[0]), group(2, teams[1])],
+            ports: vec![entry(0, server::Port::Simulator), entry(1, teams[0]), entry(2, teams[1])],
             tried: Instant::now(),
             commanders: Commanders::default(),
             began: Instant::now(),
@@ -49,7 +49,7 @@ impl Ports {
         if base == 0 {
             ports.take_any();
         }
-        ports.doors.extend(legacy.map(|number| Group {
+        ports.ports.extend(legacy.map(|number| Socket {
             port: server::Port::Legacy,
             address: SocketAddr::new(listen, number),
             socket: None,
@@ -61,7 +61,7 @@ impl Ports {
 
     /// Three free ports in a row, so that clients need only one number.
     fn take_any(&mut self) {
-        let listen = self.doors[0].address.ip();
+        let listen = self.ports[0].address.ip();
         for _ in 0..100 {
             let Ok(first) = Port::bind(SocketAddr::new(listen, 0)) else { return };
             let base = first.address().port();
@@ -69,9 +69,9 @@ impl Ports {
                 base.checked_add(offset).and_then(|port| Port::bind(SocketAddr::new(listen, port)).ok())
             };
             if let (Some(second), Some(third)) = (next(1), next(2)) {
-                for (group, socket) in self.doors.iter_mut().zip([first, second, third]) {
-                    group.address = socket.address();
-                    group.socket = Some(socket);
+                for (entry, socket) in self.ports.iter_mut().zip([first, second, third]) {
+                    entry.address = socket.address();
+                    entry.socket = Some(socket);
                 }
                 return;
             }
@@ -79,18 +79,18 @@ impl Ports {
     }
 
     fn take(&mut self, lines: &mut Vec<String>) {
-        for group in self.doors.iter_mut().filter(|group| group.socket.is_none()) {
-            match Port::bind(group.address) {
+        for entry in self.ports.iter_mut().filter(|entry| entry.socket.is_none()) {
+            match Port::bind(entry.address) {
                 Ok(socket) => {
-                    group.address = socket.address();
-                    group.socket = Some(socket);
-                    if std::mem::take(&mut group.troubled) {
-                        lines.push(format!("{} is free and taken now", group.address));
+                    entry.address = socket.address();
+                    entry.socket = Some(socket);
+                    if std::mem::take(&mut entry.troubled) {
+                        lines.push(format!("{} is free and taken now", entry.address));
                     }
                 }
-                Err(error) if !group.troubled => {
-                    group.troubled = true;
-                    lines.push(format!("{}: {error}; it is tried again every second", group.name()));
+                Err(error) if !entry.troubled => {
+                    entry.troubled = true;
+                    lines.push(format!("{}: {error}; it is tried again every second", entry.name()));
                 }
                 Err(_) => {}
             }
@@ -99,27 +99,27 @@ impl Ports {
 
     /// Passes received datagrams to the simulator.
     pub(super) fn listen(&mut self, server: &mut Server, lines: &mut Vec<String>) {
-        for group in &mut self.doors {
-            let Some(socket) = &mut group.socket else { continue };
-            for _ in 0..AT_ONCE {
+        for entry in &mut self.ports {
+            let Some(socket) = &mut entry.socket else { continue };
+            for _ in 0..DATAGRAMS_MAX {
                 match socket.receive(Duration::ZERO) {
                     Ok(Some(datagram)) => {
-                        if let server::Port::Team(team) = group.port {
+                        if let server::Port::Team(team) = entry.port {
                             let now = self.began.elapsed();
                             lines.extend(self.commanders.receive(now, team, datagram.from, datagram.bytes));
                         }
-                        server.handle(group.port, datagram.from, datagram.bytes);
+                        server.handle(entry.port, datagram.from, datagram.bytes);
                     }
                     Ok(None) => break,
                     Err(error) => {
-                        lines.push(format!("{}: {error}; it is opened again", group.name()));
-                        group.socket = None;
+                        lines.push(format!("{}: {error}; it is opened again", entry.name()));
+                        entry.socket = None;
                         break;
                     }
                 }
             }
         }
-        if self.tried.elapsed() >= AGAIN {
+        if self.tried.elapsed() >= REOPEN_AFTER {
             self.tried = Instant::now();
             self.take(lines);
         }
@@ -128,7 +128,7 @@ impl Ports {
     /// Answers a request. An answer that cannot be sent is lost, as any datagram may be.
     pub(super) fn answer(&self, from: server::Port, to: SocketAddr, bytes: &[u8]) {
         if let Some(socket) =
-            self.doors.iter().find(|group| group.port == from).and_then(|group| group.socket.as_ref())
+            self.ports.iter().find(|entry| entry.port == from).and_then(|entry| entry.socket.as_ref())
         {
             let _ = socket.send(to, bytes);
         }
@@ -141,15 +141,15 @@ impl Ports {
     }
 
     /// The addresses that clients send to, for the operator.
-    pub(super) fn description(&self) -> String {
-        let mut doors = self.doors.iter();
-        let first = doors.next().map(|group| group.address.to_string());
-        let others = doors.map(|group| format!("{} {}", group.name(), group.address.port()));
+    pub(super) fn addresses(&self) -> String {
+        let mut ports = self.ports.iter();
+        let first = ports.next().map(|entry| entry.address.to_string());
+        let others = ports.map(|entry| format!("{} {}", entry.name(), entry.address.port()));
         first.into_iter().chain(others).collect::<Vec<_>>().join(", ")
     }
 }
 
-impl Group {
+impl Socket {
     const fn name(&self) -> &'static str {
         match self.port {
             server::Port::Simulator => "control",
@@ -170,7 +170,7 @@ mod tests {
         let mut lines = Vec::new();
         let first = Ports::open(home, 0, None, &mut lines);
         assert!(lines.is_empty(), "{lines:?}");
-        let base = first.doors[0].address.port();
+        let base = first.ports[0].address.port();
         let second = Ports::open(home, base, None, &mut lines);
         assert_eq!(lines.len(), 3, "{lines:?}");
         assert!(lines[0].contains("is taken") && lines[0].contains(&base.to_string()), "{}", lines[0]);

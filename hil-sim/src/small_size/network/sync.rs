@@ -8,8 +8,8 @@ use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::time::Duration;
 
-use hil_sim::small_size::World;
-use hil_sim::small_size::server::Server;
+use crate::small_size::World;
+use crate::small_size::server::Server;
 use rules::Colour;
 use ssl::net::Connection;
 use ssl::simulation::SimulationSyncRequest;
@@ -17,14 +17,14 @@ use ssl::simulation::SimulationSyncRequest;
 /// Clients of one team's port; more are turned away.
 const CLIENTS_MAX: usize = 8;
 /// Most requests of one client in one period of the simulator: Ctrl-C and the page must be served too.
-const AT_ONCE: usize = 64;
+const REQUESTS_MAX: usize = 64;
 
 /// Both teams' ports.
 pub(super) struct SyncPorts {
-    doors: [Group; 2],
+    teams: [TeamPort; 2],
 }
 
-struct Group {
+struct TeamPort {
     colour: Colour,
     listener: TcpListener,
     clients: Vec<Connection>,
@@ -33,22 +33,22 @@ struct Group {
 impl SyncPorts {
     /// Blue's port, and yellow's at the next one. With port 0 any two that are free.
     pub(super) fn open(blue: SocketAddr) -> io::Result<Self> {
-        let group = |colour, address: SocketAddr| {
+        let team = |colour, address: SocketAddr| {
             let listener = TcpListener::bind(address)?;
             listener.set_nonblocking(true)?;
-            Ok::<_, io::Error>(Group { colour, listener, clients: Vec::new() })
+            Ok::<_, io::Error>(TeamPort { colour, listener, clients: Vec::new() })
         };
         let mut yellow = blue;
         if blue.port() != 0 {
             let next = blue.port().checked_add(1).ok_or(io::ErrorKind::InvalidInput)?;
             yellow.set_port(next);
         }
-        Ok(Self { doors: [group(Colour::Blue, blue)?, group(Colour::Yellow, yellow)?] })
+        Ok(Self { teams: [team(Colour::Blue, blue)?, team(Colour::Yellow, yellow)?] })
     }
 
     /// The address that clients connect to, for the operator.
     pub(super) fn line(&self) -> String {
-        let [blue, yellow] = self.doors.each_ref().map(|group| match group.listener.local_addr() {
+        let [blue, yellow] = self.teams.each_ref().map(|team| match team.listener.local_addr() {
             Ok(address) => address.to_string(),
             Err(error) => error.to_string(),
         });
@@ -64,9 +64,9 @@ impl SyncPorts {
         lines: &mut Vec<String>,
         mut each: impl FnMut(&mut World, &mut Vec<String>),
     ) {
-        for group in &mut self.doors {
-            while let Ok((stream, from)) = group.listener.accept() {
-                if group.clients.len() >= CLIENTS_MAX {
+        for team in &mut self.teams {
+            while let Ok((stream, from)) = team.listener.accept() {
+                if team.clients.len() >= CLIENTS_MAX {
                     lines.push(format!(
                         "sync     {from} turned away: {CLIENTS_MAX} clients are connected already"
                     ));
@@ -74,12 +74,12 @@ impl SyncPorts {
                 }
                 // On some systems a connection inherits the listener's mode.
                 match stream.set_nonblocking(false).map_err(ssl_io).and_then(|()| Connection::over(stream)) {
-                    Ok(client) => group.clients.push(client),
+                    Ok(client) => team.clients.push(client),
                     Err(error) => lines.push(format!("sync     {error}")),
                 }
             }
-            let colour = group.colour;
-            group.clients.retain_mut(|client| match answer(client, colour, server, lines, &mut each) {
+            let colour = team.colour;
+            team.clients.retain_mut(|client| match answer(client, colour, server, lines, &mut each) {
                 Ok(()) => true,
                 Err(error) => {
                     lines.push(format!("sync     {error}"));
@@ -102,7 +102,7 @@ fn answer(
     lines: &mut Vec<String>,
     each: &mut impl FnMut(&mut World, &mut Vec<String>),
 ) -> Result<(), ssl::net::NetError> {
-    for _ in 0..AT_ONCE {
+    for _ in 0..REQUESTS_MAX {
         let Some(request) = client.receive::<SimulationSyncRequest>(Duration::ZERO)? else { break };
         let response = server.synchronous(colour, &request, |world| each(world, lines));
         client.send(&response)?;
@@ -114,8 +114,8 @@ fn answer(
 mod tests {
     use std::thread;
 
-    use hil_sim::small_size::compatibility::Profile;
-    use hil_sim::small_size::server::ServerSettings;
+    use crate::small_size::compatibility::Profile;
+    use crate::small_size::server::ServerSettings;
     use rules::League;
     use ssl::Message;
     use ssl::simulation::{
@@ -142,7 +142,7 @@ mod tests {
             ServerSettings::of(League::DivisionB, Profile::Ours, 3, 0.0).expect("a league on wheels");
         let mut server = Server::new(&settings);
         let mut ports = SyncPorts::open(SocketAddr::from(([127, 0, 0, 1], 0))).expect("free ports");
-        let addresses = ports.doors.each_ref().map(|group| group.listener.local_addr().expect("an address"));
+        let addresses = ports.teams.each_ref().map(|team| team.listener.local_addr().expect("an address"));
         let clients = thread::spawn(move || {
             let wait = Duration::from_secs(20);
             let mut talks = addresses.map(|address| Connection::open(address, wait).expect("connected"));

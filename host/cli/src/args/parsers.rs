@@ -6,6 +6,7 @@ use std::net::{SocketAddr, ToSocketAddrs as _};
 use arena::evaluation::{Profile, Shard};
 use casebase::GoalEnd;
 use firmware_build::{Board, ImageBody, Program, boards};
+use hil_sim::small_size::network::RefereeKind;
 use host::config::Calibration;
 use host::strategy::Team;
 use protocol::RobotId;
@@ -78,17 +79,6 @@ pub(crate) fn field_speed(text: &str) -> Result<f32, String> {
 /// A number of cameras.
 pub(crate) fn cameras(text: &str) -> Result<u32, String> {
     text.parse().ok().filter(|n| [1, 2, 4].contains(n)).ok_or_else(|| "expected 1, 2 or 4".to_owned())
-}
-
-/// Source of referee messages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum RefereeKind {
-    /// The referee of our own.
-    Internal,
-    /// No referee at all.
-    None,
-    /// A game controller, received on this address.
-    Received(SocketAddr),
 }
 
 /// A source of referee messages by its word or address.

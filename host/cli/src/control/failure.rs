@@ -19,15 +19,6 @@ pub(super) enum ControlError {
     /// The new settings file cannot be written.
     #[error("{}: {}", printable_path(.0), unwritten(.1))]
     Init(PathBuf, io::Error),
-    /// `sim://` names no machine that is known.
-    #[error("sim://{0}: no such machine; give sim://HOST or sim://HOST:PORT of a simulator")]
-    UnknownSimulator(String),
-    /// The recording with this stem cannot be begun.
-    #[error("--record {}: {error}", .0.display(), error = .1)]
-    Record(PathBuf, io::Error),
-    /// The program of the team's own strategy cannot be started.
-    #[error("--strategy: its program cannot be started: {0}")]
-    Strategy(io::Error),
 }
 
 fn unwritten(error: &io::Error) -> String {

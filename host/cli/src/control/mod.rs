@@ -1,30 +1,11 @@
 //! `onetwo control`: the host of a team on the league's network
 //! (docs/architecture.md §3, docs/case-format.md §5).
 //!
-//! The host is a value without sockets ([`host::Host`]); here are a thread for each socket, one channel, and
-//! the loop that feeds it what arrives and sends its output. Nothing that is missing ends the program: it
-//! reports what it waits for, and goes on when that arrives.
+//! [`host::run`] has sockets, threads and the loop; here are the flags, the terminal and the page.
 
-#[path = "../../../src/run/alarms.rs"]
-mod alarms;
-#[path = "operator.rs"]
-mod board;
-#[path = "../../../src/run/event_loop.rs"]
-mod event_loop;
 mod failure;
-#[path = "../../../src/run/inbox.rs"]
-mod inbox;
-#[path = "../../../src/run/port_for_teams.rs"]
-mod port_for_teams;
-#[path = "../../../src/run/radio_alarms.rs"]
-mod radio_alarms;
+mod operator;
 mod terminal;
-#[path = "../../../src/run/threads.rs"]
-mod threads;
-#[path = "../../../src/run/tuning.rs"]
-mod tuning;
-#[path = "../../../src/run/watch.rs"]
-mod watch;
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -37,8 +18,8 @@ use arena::cases::LibraryHandle;
 use clap::Args;
 use hil_sim::small_size::Parameters;
 use host::config::{BallSettings, Calibration, DriveSettings, RobotLink, TeamConfig, TeamSettings};
+use host::run::{CONFIG_LEN_MAX, OutputFiles, Program, RunSettings, VirtualRobots};
 use protocol::RobotId;
-use rules::Colour;
 use ssl::net::addresses;
 
 use crate::Failure;
@@ -48,7 +29,9 @@ use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::library;
 use crate::output::{note, print_text, printable_path};
 use crate::robot_description::ensure_built_for;
+use crate::stop::stopped_by_hand;
 use failure::ControlError;
+use operator::{ControlOperator, PageSettings};
 
 /// Our team, and the addresses to receive from and send to. What is not given here is taken from the file,
 /// and else from the league.
@@ -179,20 +162,34 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         note!("the team's settings are in {}", printable_path(path));
         return Ok(ExitCode::SUCCESS);
     }
-    let usual = Parameters::of(config.league).map_or(0, |parameters| parameters.robots);
+    let by_default = Parameters::of(config.league).map_or(0, |parameters| parameters.robots);
     let robots = match &args.ids {
         Some(RobotIds(ids)) => ids.clone(),
-        None => (0..usual).filter_map(RobotId::new).collect(),
+        None => (0..by_default).filter_map(RobotId::new).collect(),
     };
-    let page = (!args.headless).then_some(&args.page);
     let cases = Cases::choose(&args.cases, config.league)?;
-    let keeps = event_loop::Keeps {
-        record: args.record.as_deref(),
-        learned: args.learned.as_deref(),
-        config: args.config.as_deref(),
-        live: args.live_parameters,
+    let page_settings = (!args.headless).then(|| PageSettings {
+        args: &args.page,
+        live_parameters: args.live_parameters,
+        library: cases.library_handle,
+        retrieval: cases.settings,
+    });
+    let settings = RunSettings {
+        config: &config,
+        program: Program { version: env!("CARGO_PKG_VERSION"), commit: env!("ONETWO_COMMIT") },
+        learns: !args.no_learning,
+        cases: cases.library_handle.as_ref().map(LibraryHandle::lasting_base),
+        virtual_robots: VirtualRobots { ids: robots, arguments: cases.robot_arguments },
+        output: OutputFiles {
+            record: args.record.as_deref(),
+            learned: args.learned.as_deref(),
+            config: args.config.as_deref(),
+        },
+        duration: args.duration,
     };
-    event_loop::run(&config, !args.no_learning, &robots, cases, &keeps, args.duration, page)
+    let mut operator = ControlOperator::new(&config, args.config.clone(), page_settings);
+    host::run::run(&settings, &mut operator, stopped_by_hand())?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The case library, and what retrieval is set to.
@@ -224,9 +221,6 @@ impl Cases {
 fn init(path: &Path, text: &str) -> io::Result<()> {
     File::create_new(path)?.write_all(text.as_bytes())
 }
-
-/// Longest file of settings that is read, bytes: one with every setting has 1 kB.
-const CONFIG_LEN_MAX: u64 = 1 << 20;
 
 /// A file of settings.
 fn read(path: &Path) -> Result<TeamSettings, Failure> {
@@ -276,22 +270,6 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
     Ok(config)
 }
 
-/// Where a simulator takes a team's commands: `HOST[:PORT]` names its control port.
-fn simulator(host: &str, colour: Colour) -> Result<SocketAddr, Failure> {
-    use std::net::ToSocketAddrs;
-    let (name, port) = match host.rsplit_once(':') {
-        Some((name, port)) if !name.contains(':') => (name, port.parse().ok()),
-        _ => (host, Some(addresses::SIMULATOR_PORT)),
-    };
-    let offset = match colour {
-        Colour::Blue => 1,
-        Colour::Yellow => 2,
-    };
-    let port = port.and_then(|port: u16| port.checked_add(offset));
-    let found = port.and_then(|port| (name, port).to_socket_addrs().ok()?.next());
-    found.ok_or_else(|| ControlError::UnknownSimulator(host.to_owned()).into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -308,13 +286,5 @@ mod tests {
         assert_eq!(cases.robot_arguments, ["--set", "free_path=fuzzy"].map(OsString::from));
         let line = <Line as clap::Parser>::parse_from(["control", "--library", "/nowhere"]);
         assert!(Cases::choose(&line.cases, rules::League::DivisionB).is_err());
-    }
-
-    #[test]
-    fn a_simulator_s_ports_follow_its_control_port() {
-        let port = |host, colour| simulator(host, colour).map(|address| address.port()).ok();
-        assert_eq!(port("127.0.0.1", Colour::Blue), Some(10301));
-        assert_eq!(port("127.0.0.1:20300", Colour::Yellow), Some(20302));
-        assert_eq!(port("127.0.0.1:x", Colour::Blue), None);
     }
 }

@@ -1,65 +1,183 @@
-//! `board`: the page beside a real field: displays what the host knows, and accepts HALT; where the operator
-//! allows it, changes of parameters too.
+//! `operator`: what the operator of `onetwo control` sees of the host, on the terminal and on the page, and
+//! what is asked for on the page: HALT, and where it is allowed changes of parameters and tests of kickers.
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use arena::cases::LibraryHandle;
-use feed::{CaseExplanations, Composer, LedgerFeed, Moment, SCENE_EVERY_S, tick};
+use feed::{
+    CaseExplanations, Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, change_of, test_of, tick,
+};
 use host::Host;
+use host::config::TeamConfig;
+use host::run::{Operator, Request};
 use page::{MatchEvent, Page, Powers, UserRequest};
 
-use crate::args::page::{NoPage, PageArgs};
-use crate::output::{note, program_log};
+use super::terminal::Terminal;
+use crate::args::page::PageArgs;
+use crate::output::{note, printable_path, program_log};
 
-/// A page and its composer.
-pub(super) struct Board {
+/// What the operator's page is opened with.
+pub(super) struct PageSettings<'a> {
+    pub(super) args: &'a PageArgs,
+    /// The page may change parameters.
+    pub(super) live_parameters: bool,
+    pub(super) library: Option<LibraryHandle>,
+    pub(super) retrieval: casebase::RetrievalSettings,
+}
+
+/// A terminal, and a page beside it.
+pub(super) struct ControlOperator<'a> {
+    config: &'a TeamConfig,
+    /// The team's file, for the page.
+    file: Option<PathBuf>,
+    page_settings: Option<PageSettings<'a>>,
+    terminal: Option<Terminal>,
+    dashboard: Option<Dashboard>,
+}
+
+impl<'a> ControlOperator<'a> {
+    pub(super) fn new(
+        config: &'a TeamConfig,
+        file: Option<PathBuf>,
+        page_settings: Option<PageSettings<'a>>,
+    ) -> Self {
+        Self { config, file, page_settings, terminal: None, dashboard: None }
+    }
+}
+
+impl Operator for ControlOperator<'_> {
+    fn started(&mut self) {
+        let TeamConfig { name, colour, league, .. } = self.config;
+        note!(
+            "controlling {name}, {}, {}; Ctrl-C halts the robots and ends it",
+            colour.label(),
+            league.name()
+        );
+        let title = format!("{name}, {}", colour.label());
+        self.dashboard = self.page_settings.take().and_then(|settings| Dashboard::open(settings, title));
+        self.terminal = Some(Terminal::open());
+    }
+
+    fn line(&mut self, line: String) {
+        match &mut self.terminal {
+            Some(terminal) => terminal.line(line),
+            None => note!("{line}"),
+        }
+    }
+
+    fn status(&mut self, status: String) {
+        if let Some(terminal) = &self.terminal {
+            terminal.status(status);
+        }
+    }
+
+    fn vision(&mut self, bytes: &[u8]) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.composer.vision(bytes);
+        }
+    }
+
+    fn referee(&mut self, now: protocol::Instant, bytes: &[u8]) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.composer.referee(bytes, now.0 as f64 * 1e-6, false);
+        }
+    }
+
+    fn took(&mut self, time: Duration) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.took = (dashboard.took * 15 + time) / 16;
+        }
+    }
+
+    fn fault(&mut self, now: protocol::Instant, fault: String) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.page.push(MatchEvent::fault(now.0 as f64 * 1e-6, fault));
+        }
+    }
+
+    fn changed(&mut self) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.parameters.hasten();
+        }
+    }
+
+    fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.look(now, host, alarms);
+            let name = self.file.as_deref().map(printable_path);
+            let file = Some((self.config, name.as_deref()));
+            dashboard.parameters.look(&[host], file, &dashboard.page);
+        }
+    }
+
+    fn next_request(&mut self) -> Option<Request> {
+        let page = &self.dashboard.as_ref()?.page;
+        loop {
+            return Some(match page.next_request()? {
+                UserRequest::Halt {} => Request::Halt,
+                UserRequest::Parameter { key, robot, value, .. } => {
+                    match change_of(&key, robot, value.as_ref()) {
+                        Ok(change) => Request::Change(change),
+                        Err(reason) => {
+                            page.refuse(reason);
+                            continue;
+                        }
+                    }
+                }
+                UserRequest::Kicks { robot, kicks, .. } => Request::Test(test_of(robot, kicks)),
+                UserRequest::Save {} => Request::Save,
+                // Requests for a simulation are refused when they are read.
+                _ => continue,
+            });
+        }
+    }
+
+    fn refuse(&mut self, reason: String) {
+        if let Some(dashboard) = &self.dashboard {
+            dashboard.page.refuse(reason);
+        }
+    }
+
+    fn ended(&mut self) {
+        if let Some(terminal) = self.terminal.take() {
+            terminal.close();
+        }
+    }
+}
+
+/// The page beside a real field, and what fills it.
+struct Dashboard {
     page: Page,
     composer: Composer,
     ledger: LedgerFeed,
+    parameters: ParameterFeed,
     drawn_at: Option<Instant>,
     /// Time an input takes, as a sliding mean.
     took: Duration,
 }
 
-impl Board {
+impl Dashboard {
     /// Opens the page. If it cannot be opened, the error is printed and the robots are controlled without it.
-    pub(super) fn open(
-        args: &PageArgs,
-        title: String,
-        powers: Powers,
-        library_handle: Option<LibraryHandle>,
-        settings: casebase::RetrievalSettings,
-    ) -> Option<Self> {
-        let open = || {
-            let composer = Composer::new(library_handle.as_ref(), program_log());
-            let ledger = LedgerFeed::new(library_handle.as_ref());
-            let page = args.open(title, false, powers, CaseExplanations::new(library_handle, settings))?;
-            Ok::<_, NoPage>(Self { page, composer, ledger, drawn_at: None, took: Duration::ZERO })
-        };
-        open().map_err(|failure| note!("page     there is none: {failure}")).ok()
-    }
-
-    pub(super) fn vision(&mut self, bytes: &[u8]) {
-        self.composer.vision(bytes);
-    }
-
-    pub(super) fn referee(&mut self, bytes: &[u8], now: protocol::Instant) {
-        self.composer.referee(bytes, now.0 as f64 * 1e-6, false);
-    }
-
-    /// Adds a fault to the page's events.
-    pub(super) fn fault(&mut self, now: protocol::Instant, description: String) {
-        let t = now.0 as f64 * 1e-6;
-        self.page.push(MatchEvent::fault(t, description));
-    }
-
-    /// Records how long an input took.
-    pub(super) fn took(&mut self, time: Duration) {
-        self.took = (self.took * 15 + time) / 16;
+    fn open(settings: PageSettings<'_>, title: String) -> Option<Self> {
+        let PageSettings { args, live_parameters, library, retrieval } = settings;
+        let powers = if live_parameters { Powers::Tune } else { Powers::Halt };
+        let page = args
+            .open(title, false, powers, CaseExplanations::new(library, retrieval))
+            .map_err(|error| note!("page     there is none: {error}"))
+            .ok()?;
+        Some(Self {
+            page,
+            composer: Composer::new(library.as_ref(), program_log()),
+            ledger: LedgerFeed::new(library.as_ref()),
+            parameters: ParameterFeed::default(),
+            drawn_at: None,
+            took: Duration::ZERO,
+        })
     }
 
     /// Sends the scene to the page if it is due.
-    pub(super) fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) {
+    fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) {
         let every = Duration::from_secs_f64(SCENE_EVERY_S);
         let t = now.0 as f64 * 1e-6;
         self.ledger.look(t, host, &[host]);
@@ -75,15 +193,5 @@ impl Board {
             self.page.show(deferred_scene);
             self.ledger.send(t, &[host], false, &self.page);
         }
-    }
-
-    /// The next request of a viewer.
-    pub(super) fn next_request(&self) -> Option<UserRequest> {
-        self.page.next_request()
-    }
-
-    /// The page, to show parameters on it and to refuse what was asked last.
-    pub(super) fn page(&self) -> &Page {
-        &self.page
     }
 }

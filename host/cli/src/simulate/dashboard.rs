@@ -1,4 +1,4 @@
-//! `board`: the page beside a simulated field on which other programs play: the truth, the output of our
+//! `dashboard`: the page beside a simulated field on which other programs play: the truth, the output of our
 //! tracker for the vision, and controls for the ball.
 
 use std::time::{Duration, Instant};
@@ -8,6 +8,7 @@ use feed::{
 };
 use foreign::excerpt;
 use geometry::Point;
+use hil_sim::small_size::network::FieldRequest;
 use hil_sim::small_size::referee::InternalReferee;
 use hil_sim::small_size::server::Server;
 use host::referee::SenderAddress;
@@ -24,19 +25,8 @@ use crate::output::{note, program_log};
 /// Longest part of a name sent by a viewer that is quoted in an answer, characters.
 const NAME_LEN: usize = 60;
 
-/// Requests of viewers to the simulator loop.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct TeamRequest {
-    /// New speed; 0 pauses.
-    pub(super) pace: Option<f32>,
-    /// Number of further ticks of 10 ms, after which it stands still.
-    pub(super) ticks: u32,
-    /// A restart with this seed.
-    pub(super) restart: Option<u64>,
-}
-
 /// A page, its composer, and the host whose world is displayed, which commands no robot.
-pub(super) struct Board {
+pub(super) struct Dashboard {
     page: Page,
     composer: Composer,
     feed: Host,
@@ -49,7 +39,7 @@ pub(super) struct Board {
     snapshots: Snapshots,
 }
 
-impl Board {
+impl Dashboard {
     /// Opens the page. If it cannot be opened, the error is printed and the field is simulated without it.
     pub(super) fn open(args: &PageArgs, league: League, seed: u64, speed: f32) -> Option<Self> {
         let open = || {
@@ -101,19 +91,19 @@ impl Board {
         running: Duration,
         server: &mut Server,
         mut referee: Option<&mut InternalReferee>,
-    ) -> TeamRequest {
-        let mut wanted = TeamRequest::default();
+    ) -> FieldRequest {
+        let mut wanted = FieldRequest::default();
         self.t = server.world().time();
         while let Some(request) = self.page.next_request() {
             match request {
-                UserRequest::Pause { on } => wanted.pace = Some(if on { 0.0 } else { self.speed }),
+                UserRequest::Pause { on } => wanted.speed = Some(if on { 0.0 } else { self.speed }),
                 UserRequest::Step { ticks } => {
-                    (wanted.pace, wanted.ticks) = (Some(0.0), wanted.ticks + ticks);
+                    (wanted.speed, wanted.ticks) = (Some(0.0), wanted.ticks + ticks);
                 }
                 UserRequest::Restart { seed } => wanted.restart = Some(seed.unwrap_or(self.seed)),
                 UserRequest::Speed { factor } => {
                     self.speed = factor;
-                    wanted.pace = Some(factor);
+                    wanted.speed = Some(factor);
                 }
                 UserRequest::Ball { at } => server.world_mut().drag_ball(Point::new(at[0], at[1])),
                 UserRequest::Robot { team, id, at } => {
@@ -170,7 +160,7 @@ impl Board {
             for match_event in self.composer.take_match_events() {
                 self.page.push(match_event);
             }
-            let speed = wanted.pace.unwrap_or(server.pace());
+            let speed = wanted.speed.unwrap_or(server.pace());
             deferred_scene.scene.paused = speed == 0.0;
             deferred_scene.scene.speed = self.speed;
             deferred_scene.scene.seed = Some(self.seed);

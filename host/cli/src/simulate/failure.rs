@@ -1,8 +1,5 @@
 //! `failure`: why `onetwo simulate` cannot start, and how to fix it.
 
-use std::io;
-use std::net::SocketAddr;
-
 use rules::League;
 use thiserror::Error;
 
@@ -18,7 +15,4 @@ pub(super) enum SimulateError {
     /// A league without wheels.
     #[error("{} is not played on wheels", .0.name())]
     NotOnWheels(League),
-    /// The ports of `--sync` cannot be had.
-    #[error("--sync {0}: {1}; it and the next port must be free")]
-    Sync(SocketAddr, io::Error),
 }

@@ -1,25 +1,12 @@
 //! `onetwo simulate`: a Small Size field that any team's software can play on, by the league's simulation
 //! protocol (docs/architecture.md §7.3).
 //!
-//! The simulator is a value without sockets ([`hil_sim::small_size::server`]); here are its sockets, its
-//! clock, and the internal referee. It goes on where a port is taken or a network is missing, and reports how
-//! to fix it.
+//! [`hil_sim::small_size::network`] has sockets, clock and referee; here are the flags, the terminal and the
+//! page.
 
-#[path = "../../../../hil-sim/src/small_size/network/autoref.rs"]
-mod autoref;
-#[path = "dashboard.rs"]
-mod board;
-#[path = "../../../../hil-sim/src/small_size/network/commanders.rs"]
-mod commanders;
-#[path = "../../../../hil-sim/src/small_size/network/controller.rs"]
-mod crew;
+mod dashboard;
 mod failure;
-#[path = "../../../../hil-sim/src/small_size/network/ports.rs"]
-mod ports;
-#[path = "../../../../hil-sim/src/small_size/network/field_loop.rs"]
-mod server_loop;
-#[path = "../../../../hil-sim/src/small_size/network/sync.rs"]
-mod sync;
+mod spectator;
 
 use std::net::SocketAddr;
 use std::process::ExitCode;
@@ -28,15 +15,18 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use clap::{Args, ValueEnum};
 use hil_sim::small_size::NoiseParameters;
 use hil_sim::small_size::compatibility::Profile;
-use hil_sim::small_size::server::{Server, ServerSettings};
+use hil_sim::small_size::network::{self, NetworkSettings, RefereeKind};
+use hil_sim::small_size::server::ServerSettings;
 use hil_sim::small_size::worlds::{WorldChoice, WorldModel};
 use rules::League;
 use ssl::net::addresses;
 
 use crate::Failure;
-use crate::args::parsers::{RefereeKind, cameras, controller, field_speed, league, referee, seconds};
+use crate::args::parsers::{cameras, controller, field_speed, league, referee, seconds};
 use crate::robot_description::ensure_built_for;
+use crate::stop::stopped_by_hand;
 use failure::SimulateError;
+use spectator::FieldOperator;
 
 /// What is simulated, and the addresses to receive from and send to.
 #[derive(Debug, Args)]
@@ -162,6 +152,30 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     if args.ideal {
         settings.model.parameters.noise = NoiseParameters::NONE;
     }
-    let server = Server::new(&settings);
-    server_loop::run(args, &settings, server, unix.as_micros() as u64)
+    let title = format!(
+        "simulating {}, {robots} v {robots} robots, world {}, seed {}; Ctrl-C ends it",
+        args.league.name(),
+        settings.model.name,
+        args.seed,
+        robots = settings.robots,
+    );
+    let network = NetworkSettings {
+        server: settings,
+        unix_us: unix.as_micros() as u64,
+        robots: args.robots,
+        speed: args.speed,
+        listen: args.listen,
+        port: args.ports,
+        legacy_port: args.legacy_port(),
+        sync: args.sync,
+        vision: args.vision,
+        interface: args.interface.clone(),
+        referee: args.referee,
+        referee_to: args.referee_to,
+        assistant: args.assistant,
+        autoref: args.autoref.clone(),
+        duration: args.duration,
+    };
+    network::run(&network, &mut FieldOperator::new(args, title), stopped_by_hand())?;
+    Ok(ExitCode::SUCCESS)
 }

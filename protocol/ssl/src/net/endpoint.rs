@@ -1,35 +1,36 @@
-//! `net`: sockets of the verbs. Multicast where the address is a group, unicast where it is one machine's.
+//! `endpoint`: a sender and a receiver for any address: multicast where it is a group, unicast where it is one
+//! machine's.
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
-use ssl::net::{Datagram, Interfaces, NetError, Port, Receiver, Sender};
+use super::{Datagram, Interfaces, NetError, Port, Receiver, Sender};
 
 /// Sends to an address; an error is reported once, not a thousand times a second.
 #[derive(Debug)]
-pub(crate) struct NetSender {
+pub struct NetSender {
     to: SocketAddr,
     /// The interface to send by; `None`: the system's choice.
     by: Option<String>,
     sender: Option<Sender>,
     troubled: bool,
     /// Number of datagrams sent.
-    pub(crate) sent: u64,
+    pub sent: u64,
 }
 
 impl NetSender {
     /// The socket is opened with the first datagram.
-    pub(crate) fn new(to: SocketAddr, by: Option<&str>) -> Self {
+    pub fn new(to: SocketAddr, by: Option<&str>) -> Self {
         Self { to, by: by.map(str::to_owned), sender: None, troubled: false, sent: 0 }
     }
 
     /// The address that it sends to.
-    pub(crate) const fn to(&self) -> SocketAddr {
+    pub const fn to(&self) -> SocketAddr {
         self.to
     }
 
     /// Sends to another port of the same address from now on.
-    pub(crate) fn set_port(&mut self, port: u16) {
+    pub fn set_port(&mut self, port: u16) {
         if self.to.port() != port {
             self.to.set_port(port);
             self.sender = None;
@@ -38,8 +39,8 @@ impl NetSender {
 
     /// Sends; returns a message for the operator where sending starts to fail, recovers, or uses another
     /// interface than requested.
-    pub(crate) fn send(&mut self, bytes: &[u8]) -> Option<String> {
-        let description = match self.try_send(bytes) {
+    pub fn send(&mut self, bytes: &[u8]) -> Option<String> {
+        let trouble = match self.try_send(bytes) {
             Ok(()) => return self.works(),
             Err(NetError::NoRoute { .. }) if self.by.is_none() && self.to.ip().is_multicast() => {
                 // Without any network this machine can still be reached.
@@ -59,7 +60,7 @@ impl NetSender {
             Err(error) => error.to_string(),
         };
         self.sender = None;
-        (!std::mem::replace(&mut self.troubled, true)).then_some(description)
+        (!std::mem::replace(&mut self.troubled, true)).then_some(trouble)
     }
 
     fn works(&mut self) -> Option<String> {
@@ -81,7 +82,7 @@ impl NetSender {
 
 /// Receives from an address: a multicast group shared with other programs, or a port of its own.
 #[derive(Debug)]
-pub(crate) enum NetReceiver {
+pub enum NetReceiver {
     /// A multicast group.
     Group(Receiver),
     /// A unicast port.
@@ -90,7 +91,7 @@ pub(crate) enum NetReceiver {
 
 impl NetReceiver {
     /// Joins the group, or takes the port.
-    pub(crate) fn open(address: SocketAddr, by: &Interfaces) -> Result<Self, NetError> {
+    pub fn open(address: SocketAddr, by: &Interfaces) -> Result<Self, NetError> {
         match address {
             SocketAddr::V4(group) if group.ip().is_multicast() => Receiver::join(group, by).map(Self::Group),
             address => Port::bind(address).map(Self::Own),
@@ -98,15 +99,15 @@ impl NetReceiver {
     }
 
     /// The next datagram, within `wait`.
-    pub(crate) fn receive(&mut self, wait: Duration) -> Result<Option<Datagram<'_>>, NetError> {
+    pub fn receive(&mut self, wait: Duration) -> Result<Option<Datagram<'_>>, NetError> {
         match self {
             Self::Group(receiver) => receiver.receive(wait),
             Self::Own(port) => port.receive(wait),
         }
     }
 
-    /// How it receives, as text.
-    pub(crate) fn description(&self) -> String {
+    /// Interfaces or port that it receives on, for the operator.
+    pub fn route(&self) -> String {
         match self {
             Self::Group(receiver) => {
                 receiver.joined().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
@@ -135,7 +136,7 @@ mod tests {
     fn what_cannot_be_sent_is_reported_once() {
         let mut sender = NetSender::new(([127, 0, 0, 1], 9).into(), None);
         let too_large = vec![0; 70_000];
-        assert!(sender.send(&too_large).is_some_and(|description| description.contains("70000")));
+        assert!(sender.send(&too_large).is_some_and(|trouble| trouble.contains("70000")));
         assert_eq!(sender.send(&too_large), None);
     }
 }

@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use host::config::RobotLink;
 use host::radio::To;
+use host::run::{PublicKey, real_epoch};
 use host::shell::{Link, SerialLink, UdpLink, key};
 use protocol::frame::TeamKey;
 use protocol::host::{HostMessage, WorldPart};
@@ -24,7 +25,6 @@ use rules::Phase;
 
 use crate::Failure;
 use crate::args::parsers::{robot_number, seconds};
-use crate::identity::{PublicKey, real_epoch};
 use crate::output::{note, print_text};
 use crate::stop::{signal, stopped_by_hand};
 use failure::BringUpError;
@@ -69,7 +69,11 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
     }
     let stopped = stopped_by_hand();
     let mut link = open(&robots)?;
-    let mut host = HostLink::new(TeamId(args.team), read.key, real_epoch());
+    let epoch = real_epoch();
+    if let Some(warning) = &epoch.warning {
+        note!("warning: {warning}");
+    }
+    let mut host = HostLink::new(TeamId(args.team), read.key, epoch.epoch);
     let mut progress = Progress::new(TeamId(args.team), &read.key, host.epoch(), args.robot);
     let format = if args.json { Format::Json } else { Format::Text };
     note!("waiting for a robot's checks over {}; Ctrl-C ends it", args.robots);
