@@ -20,6 +20,7 @@ pub mod record;
 pub mod referee;
 mod requests;
 pub mod robot_test;
+pub mod run;
 pub mod shell;
 pub mod strategy;
 pub mod tracking;

@@ -368,7 +368,7 @@ const PURE: [&str; 12] = [
 /// Where boards lie; in [`LOWEST_FIRST`] all of them.
 const BOARDS: &str = "firmware/boards/";
 /// docs/architecture.md §1.2; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 34] = [
+const LOWEST_FIRST: [&str; 35] = [
     "foreign",
     "robots",
     "geometry",
@@ -398,6 +398,7 @@ const LOWEST_FIRST: [&str; 34] = [
     "arena",
     "study",
     "report",
+    "feed",
     "team",
     "onetwo",
     "match-tests",

@@ -17,6 +17,7 @@ mod contact;
 mod described;
 mod dribbler;
 mod event;
+pub mod network;
 mod order;
 mod parameters;
 mod pitch;

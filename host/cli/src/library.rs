@@ -5,31 +5,56 @@ use std::path::Path;
 
 use arena::cases::{LibraryError, LibraryHandle};
 use case_tools::{Finding, Library, Reduction};
+use rules::League;
 
-use crate::Failure;
-use crate::args::LibraryArgs;
+use crate::args::{DirectoryArgs, LibraryArgs};
+use crate::output::note;
 use crate::progress::Progress;
 
 /// Opens the library that the command line names.
-pub(crate) fn open(args: &LibraryArgs) -> Result<LibraryHandle, Failure> {
+pub(crate) fn open(args: &LibraryArgs) -> Result<LibraryHandle, LibraryError> {
     match &args.directory.library {
         Some(directory) => read(directory),
-        None => Ok(LibraryHandle::named(&args.league)?),
+        None => LibraryHandle::named(&args.league),
     }
 }
 
 /// The same with at most those of its cases that `reduction` keeps.
-pub(crate) fn open_reduced(args: &LibraryArgs, reduction: Reduction) -> Result<LibraryHandle, Failure> {
-    Ok(open(args)?.reduced(reduction)?)
+pub(crate) fn open_reduced(args: &LibraryArgs, reduction: Reduction) -> Result<LibraryHandle, LibraryError> {
+    open(args)?.reduced(reduction)
 }
 
 /// One league's directory; with a bar as [`load`].
-pub(crate) fn read(directory: &Path) -> Result<LibraryHandle, Failure> {
-    Ok(with_bar(|on_progress| LibraryHandle::read(directory, on_progress))?)
+pub(crate) fn read(directory: &Path) -> Result<LibraryHandle, LibraryError> {
+    with_bar(|on_progress| LibraryHandle::read(directory, on_progress))
+}
+
+/// The cases that come with a league, or those of a directory; none if neither exists.
+pub(crate) fn of_league(
+    league: League,
+    directory: Option<&Path>,
+) -> Result<Option<LibraryHandle>, LibraryError> {
+    match directory {
+        Some(directory) => read(directory).map(Some),
+        None => case_library::league(league.name()).map(|_| LibraryHandle::named(league.name())).transpose(),
+    }
+}
+
+/// The same for a match; a league without cases is noted: there, robots that the host leaves free play by the
+/// reactive behaviour.
+pub(crate) fn of_match(
+    directory: &DirectoryArgs,
+    league: League,
+) -> Result<Option<LibraryHandle>, LibraryError> {
+    let library_handle = of_league(league, directory.library.as_deref())?;
+    if library_handle.is_none() {
+        note!("no cases come with {}: robots that are left free play reactively", league.name());
+    }
+    Ok(library_handle)
 }
 
 /// The libraries if no single one is named: the directory, or every built-in league.
-pub(crate) fn all(directory: Option<&Path>) -> Result<Vec<LibraryHandle>, Failure> {
+pub(crate) fn all(directory: Option<&Path>) -> Result<Vec<LibraryHandle>, LibraryError> {
     match directory {
         Some(directory) => Ok(vec![read(directory)?]),
         None => Ok(LibraryHandle::all_built_in().collect()),
@@ -46,7 +71,7 @@ pub(crate) fn load(directory: &Path) -> Result<Library, Vec<Finding>> {
 fn with_bar<T>(read: impl FnOnce(&dyn Fn(usize, usize)) -> T) -> T {
     let progress = OnceCell::new();
     read(&|done, all| {
-        if all >= MANY {
+        if all >= BAR_FROM_STEPS {
             let line = progress.get_or_init(|| {
                 let line = Progress::open();
                 line.set_text("reading the library");
@@ -57,11 +82,5 @@ fn with_bar<T>(read: impl FnOnce(&dyn Fn(usize, usize)) -> T) -> T {
     })
 }
 
-impl From<LibraryError> for Failure {
-    fn from(error: LibraryError) -> Self {
-        Self::Library(error)
-    }
-}
-
 /// Number of load steps from which a progress bar is drawn: half a thousand files.
-const MANY: usize = 1000;
+const BAR_FROM_STEPS: usize = 1000;

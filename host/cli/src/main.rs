@@ -12,25 +12,21 @@ mod evaluate;
 mod failure;
 mod firmware;
 mod library;
-#[path = "../../feed/src/lib.rs"]
-mod live;
 #[cfg(feature = "manuals")]
 mod manuals;
-mod net;
 mod output;
 mod picture;
 mod play;
 mod progress;
 mod replay;
 mod robot;
+mod robot_description;
 mod setup;
 mod simulate;
 mod stop;
 mod trial;
 mod verbs;
 mod virtual_robot;
-#[path = "../../feed/src/workbench/mod.rs"]
-mod workbench;
 
 use std::process::ExitCode;
 
@@ -56,5 +52,12 @@ fn main() -> ExitCode {
         #[cfg(feature = "manuals")]
         Verb::Manuals(args) => manuals::run(&args, <Cli as clap::CommandFactory>::command()),
     };
-    outcome.unwrap_or_else(|failure| failure.report())
+    match outcome {
+        Ok(code) => code,
+        Err(failure) if failure.is_closed_stdout() => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::print_error(&failure);
+            ExitCode::FAILURE
+        }
+    }
 }

@@ -11,7 +11,7 @@ use clap_complete::Shell;
 
 use crate::failure::Failure;
 use crate::output::{print_text, printable_path};
-use crate::picture::SnapshotError;
+use crate::picture::{SnapshotError, Unwritten};
 
 /// Where to write.
 #[derive(Debug, Args)]
@@ -22,10 +22,8 @@ pub(crate) struct ManualsArgs {
 
 /// Writes those of `program`.
 pub(crate) fn run(args: &ManualsArgs, program: Command) -> Result<ExitCode, Failure> {
-    write(&args.directory, program).map_err(|error| Failure::Picture {
-        file: args.directory.clone(),
-        error: SnapshotError::Write(error),
-    })?;
+    write(&args.directory, program)
+        .map_err(|error| Unwritten { file: args.directory.clone(), error: SnapshotError::Write(error) })?;
     print_text(&format!("manual pages and completions are in {}\n", printable_path(&args.directory)))?;
     Ok(ExitCode::SUCCESS)
 }

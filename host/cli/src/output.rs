@@ -8,14 +8,14 @@
 use std::env;
 use std::fmt::{Arguments, Display};
 use std::io::{self, BufWriter, IsTerminal as _, StdoutLock, Write};
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use clap::ValueEnum;
 
-use foreign::{Printable, printable};
+use foreign::Printable;
 use page::{LogLevel, ProgramLog};
+use serde::Serialize;
 
 use crate::Failure;
 
@@ -74,7 +74,12 @@ pub(crate) fn print_text(description: &str) -> Result<(), Failure> {
     out.write_all(description.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)
 }
 
-/// What the program has printed on stderr, for its page: there is one stderr, and one log of it.
+/// A value as a line of JSON.
+pub(crate) fn json_line(value: &impl Serialize) -> Result<String, Failure> {
+    serde_json::to_string(value).map(|text| text + "\n").map_err(|error| Failure::Output(error.into()))
+}
+
+/// Log of everything printed on stderr, for the page: there is one stderr, and one log of it.
 pub(crate) fn program_log() -> Arc<ProgramLog> {
     static LOG: OnceLock<Arc<ProgramLog>> = OnceLock::new();
     LOG.get_or_init(Arc::default).clone()
@@ -109,10 +114,7 @@ macro_rules! note {
 }
 pub(crate) use note;
 
-/// A file's name as it can stand in a line.
-pub(crate) fn printable_path(file: &Path) -> String {
-    printable(&file.to_string_lossy()).into_owned()
-}
+pub(crate) use foreign::printable_path;
 
 #[cfg(test)]
 mod tests {

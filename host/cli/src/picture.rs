@@ -17,7 +17,7 @@ pub(crate) fn write(file: &Path, svg: &str) -> Result<(), Failure> {
         Ok(bytes) => std::fs::write(file, bytes).map_err(SnapshotError::Write),
         Err(error) => Err(error),
     };
-    written.map_err(|error| Failure::Picture { file: file.to_owned(), error })
+    written.map_err(|error| Unwritten { file: file.to_owned(), error }.into())
 }
 
 #[cfg(feature = "png")]
@@ -69,6 +69,16 @@ impl fmt::Display for SnapshotError {
 }
 
 impl std::error::Error for SnapshotError {}
+
+/// A file that cannot be written, and why.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write the picture {}: {error}", foreign::printable_path(file))]
+pub(crate) struct Unwritten {
+    /// The output file.
+    pub(crate) file: PathBuf,
+    /// Why.
+    pub(crate) error: SnapshotError,
+}
 
 /// For clap: the name of a figure, of one of these kinds.
 pub(crate) fn named(text: &str, kinds: &'static [&'static str]) -> Result<PathBuf, SnapshotError> {

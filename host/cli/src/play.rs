@@ -11,6 +11,7 @@ use arena::CaseNames;
 use arena::cases::LibraryHandle;
 use arena::game::{self, Game, GameConfig, GameReport, MatchLog, Watcher, Watchers};
 use clap::Args;
+use feed::{CaseExplanations, End, MatchObserver, MatchRunner, RunSettings, SharedLibrary};
 use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::record::Recorder;
@@ -21,13 +22,14 @@ use protocol::Instant;
 use rules::{Colour, League};
 
 use crate::Failure;
+use crate::args::page::PageArgs;
+use crate::args::parsers::{league, match_seconds, match_speed, team};
 use crate::args::{DirectoryArgs, SettingsArgs};
-use crate::live::{CaseExplanations, End, MatchRunner, PageArgs, RestartWatcher, library_handle_of};
-use crate::output::{self, note};
+use crate::library;
+use crate::output::{self, note, program_log};
 use crate::progress::Progress;
-use crate::robot;
+use crate::robot_description::ensure_built_for;
 use crate::stop::{signal, stopped_by_hand};
-use crate::workbench::SharedLibrary;
 
 /// Settings of a match.
 #[derive(Debug, Args)]
@@ -40,10 +42,10 @@ pub(crate) struct PlayArgs {
     #[command(flatten)]
     page: PageArgs,
     /// Simulated seconds a second, with the page; its viewers can change it.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed, conflicts_with = "headless")]
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = match_speed, conflicts_with = "headless")]
     speed: f32,
     /// Length of the match, simulated seconds.
-    #[arg(short, long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
+    #[arg(short, long, value_name = "SECONDS", default_value_t = 600.0, value_parser = match_seconds)]
     duration: f64,
     /// Random seed.
     #[arg(short, long, default_value_t = 1)]
@@ -98,33 +100,9 @@ const EXIT_CODES: &str = "\
 Exit codes: 0 played to its end; 1 it could not be played or recorded; 2 wrong usage. With --headless a first Ctrl-C (or SIGTERM) ends
 the match in order: recordings are closed, the summary is printed, and the exit code is 130 (or 143). A second one ends it at once.";
 
-pub(crate) fn seconds(text: &str) -> Result<f64, String> {
-    let seconds: f64 = text.parse().map_err(|_| "expected seconds, such as 600".to_owned())?;
-    if (0.0..=36_000.0).contains(&seconds) { Ok(seconds) } else { Err("0 to 36000 seconds".to_owned()) }
-}
-
-fn speed(text: &str) -> Result<f32, String> {
-    text.parse()
-        .ok()
-        .filter(|x| (0.05..=20.0).contains(x))
-        .ok_or_else(|| "expected 0.05 to 20, such as 2".to_owned())
-}
-
-pub(crate) fn league(name: &str) -> Result<League, String> {
-    [League::Ssl2013, League::DivisionB, League::DivisionA]
-        .into_iter()
-        .find(|league| league.name() == name)
-        .ok_or_else(|| "expected ssl-2013, division-b or division-a".to_owned())
-}
-
-/// A team by its name.
-pub(crate) fn team(label: &str) -> Result<Team, String> {
-    Team::from_label(label).ok_or_else(|| format!("take {}", Team::ALL.map(Team::label).join(", ")))
-}
-
 /// `onetwo play`.
 pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
-    robot::ensure_built_for(args.robot.as_deref())?;
+    ensure_built_for(args.robot.as_deref())?;
     let mut config = GameConfig::new(args.league, args.seed, args.duration).between(args.blue, args.yellow);
     config.world = args.world;
     let settings = args.settings.choose()?.settings;
@@ -135,7 +113,7 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         let command = if team.colour == Colour::Blue { &args.blue_strategy } else { &args.yellow_strategy };
         team.strategy = command.as_deref().map(StrategyProcess::starter);
     }
-    let library_handle = cases(&args.directory, args.league)?;
+    let library_handle = library::of_match(&args.directory, args.league)?;
     if let Some(library_handle) = &library_handle {
         config.names = CaseNames::new(library_handle.names());
         config.cases = Some(library_handle.lasting_base());
@@ -152,8 +130,7 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         if let Some(recording) = &mut recording {
             crowd.0.push(recording);
         }
-        game::play_until(&config, &mut backend, &mut crowd, || stopped.load(Ordering::Relaxed))
-            .map_err(Failure::Game)?
+        game::play_until(&config, &mut backend, &mut crowd, || stopped.load(Ordering::Relaxed))?
     };
     if let Some(recording) = recording {
         recording.finish().map_err(|error| Failure::Recording { stem: None, error })?;
@@ -191,7 +168,9 @@ fn on_page(
     let title = format!("{}, seed {}{world}", args.league.name(), args.seed);
     let page = args.page.open(title, false, Powers::Simulation, explanations)?;
     note!("playing  {}; Ctrl-C ends it", args.league.name());
-    let mut match_runner = MatchRunner::new(config, library, page, args.speed, args.record.is_some());
+    let (speed, recorded) = (args.speed, args.record.is_some());
+    let settings = RunSettings { speed, recorded, log: program_log(), stopped: stopped_by_hand() };
+    let mut match_runner = MatchRunner::new(config, library, page, settings);
     loop {
         let (report, over) = match match_runner.play(&mut watched)? {
             End::Over(report) => (report, true),
@@ -207,8 +186,7 @@ fn on_page(
         }
         note!("the match is over; the page stays until Ctrl-C");
         let Some(seed) = match_runner.linger() else { return Ok(ExitCode::SUCCESS) };
-        match_runner.restart(seed);
-        watched.restart();
+        match_runner.restart(seed, &mut watched);
     }
 }
 
@@ -218,13 +196,17 @@ struct Watched {
     recording: Option<Recorder>,
 }
 
-impl RestartWatcher for Watched {
+impl MatchObserver for Watched {
     fn watcher(&mut self) -> &mut dyn Watcher {
         self
     }
 
     fn restart(&mut self) {
         self.teller.story = self.teller.story.is_some().then(MatchLog::default);
+    }
+
+    fn note(&mut self, line: &str) {
+        note!("{line}");
     }
 }
 
@@ -244,16 +226,6 @@ impl Watcher for Watched {
     fn tick(&mut self, game: &Game<'_>) {
         self.teller.tick(game);
     }
-}
-
-/// The league's cases; a league without any plays by the reactive behaviour where the host leaves robots
-/// free.
-pub(crate) fn cases(directory: &DirectoryArgs, league: League) -> Result<Option<LibraryHandle>, Failure> {
-    let library_handle = library_handle_of(league, directory.library.as_deref())?;
-    if library_handle.is_none() {
-        note!("no cases come with {}: robots that are left free play reactively", league.name());
-    }
-    Ok(library_handle)
 }
 
 fn record(stem: &std::path::Path, config: &GameConfig) -> Result<Recorder, Failure> {

@@ -5,10 +5,14 @@ use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use feed::recording::ReadObserver;
+
+use crate::output::note;
+
 /// Time between two drawings: more often than this an eye sees nothing new.
-const REDRAW: Duration = Duration::from_millis(100);
+const REDRAW_EVERY: Duration = Duration::from_millis(100);
 /// Width of a bar, characters.
-const BAR: u64 = 40;
+const BAR_WIDTH: u64 = 40;
 
 /// A line that is drawn over itself, and goes when this is dropped.
 #[derive(Debug)]
@@ -36,6 +40,13 @@ impl Progress {
     /// Of that many steps, which are called `unit`.
     pub(crate) fn of(steps: u64, unit: &'static str) -> Self {
         Self::new(unit, Some(steps))
+    }
+
+    /// A line that is never drawn.
+    pub(crate) fn silent() -> Self {
+        let progress = Self::open();
+        progress.line().visible = false;
+        progress
     }
 
     fn new(unit: &'static str, of: Option<u64>) -> Self {
@@ -88,6 +99,16 @@ impl Progress {
     }
 }
 
+impl ReadObserver for Progress {
+    fn record(&self) {
+        self.add(1);
+    }
+
+    fn note(&self, line: &str) {
+        self.aside(|| note!("{line}"));
+    }
+}
+
 impl Drop for Progress {
     fn drop(&mut self) {
         self.line().clear();
@@ -97,7 +118,7 @@ impl Drop for Progress {
 impl Line {
     fn draw(&mut self) {
         let now = Instant::now();
-        if !self.visible || self.drawn.is_some_and(|drawn| now.duration_since(drawn) < REDRAW) {
+        if !self.visible || self.drawn.is_some_and(|drawn| now.duration_since(drawn) < REDRAW_EVERY) {
             return;
         }
         self.drawn = Some(now);
@@ -119,8 +140,8 @@ impl Line {
                 self.description.clone()
             };
         };
-        let full = (BAR * self.done.min(of)).checked_div(of).unwrap_or(0) as usize;
-        let bar = "█".repeat(full) + &"░".repeat(BAR as usize - full);
+        let full = (BAR_WIDTH * self.done.min(of)).checked_div(of).unwrap_or(0) as usize;
+        let bar = "█".repeat(full) + &"░".repeat(BAR_WIDTH as usize - full);
         let gap = if self.description.is_empty() { "" } else { " " };
         let mut text = format!("{}{gap}{bar} {}/{of}", self.description, self.done);
         if !self.unit.is_empty() {

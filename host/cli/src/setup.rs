@@ -4,13 +4,13 @@
 //! an ablation.
 
 use arena::cases::LibraryHandle;
-use arena::{Profile, Setup};
+use arena::Setup;
 use brain::Positioning;
 use case_tools::Reduction;
 use clap::{Args, ValueEnum};
 
 use crate::Failure;
-use crate::args::{LibraryArgs, SettingsArgs};
+use crate::args::{LibraryArgs, SettingsArgs, parsers};
 use crate::library;
 
 /// The attackers' set-up.
@@ -23,7 +23,7 @@ pub(crate) struct SetupArgs {
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=4))]
     retrievers: Option<u8>,
     /// Share of packets lost, 0 to 1.
-    #[arg(long, default_value_t = 0.0, value_parser = share)]
+    #[arg(long, default_value_t = 0.0, value_parser = parsers::share)]
     loss: f32,
     /// Without the mirrored copies of cases: only authored ones are known.
     #[arg(long)]
@@ -73,7 +73,7 @@ impl SetupArgs {
         Ok(library_handle)
     }
 
-    /// Whether the firmware contains the cases.
+    /// True if the firmware contains the cases.
     pub(crate) fn is_built_in(&self) -> bool {
         self.library.directory.library.is_none() && !self.no_symmetry && !self.no_opponents
     }
@@ -128,35 +128,4 @@ impl SetupArgs {
 /// The part of a library that a set-up keeps.
 pub(crate) const fn reduction(setup: &Setup) -> Reduction {
     Reduction { symmetry: setup.symmetry, opponents: setup.opponents }
-}
-
-/// Parses a scenario, as flags take it.
-pub(crate) fn scenario(label: &str) -> Result<hil_sim::Scenario, String> {
-    hil_sim::Scenario::from_label(label).ok_or_else(|| "take 1, 2, 3, 4 or random".to_owned())
-}
-
-/// Parses opponents.
-pub(crate) fn opponents(label: &str) -> Result<hil_sim::Configuration, String> {
-    hil_sim::Configuration::from_label(label).ok_or_else(|| "take dg or 2d".to_owned())
-}
-
-/// Parses a world.
-pub(crate) fn profile(label: &str) -> Result<Profile, String> {
-    Profile::from_label(label).ok_or_else(|| "take simulated or robots".to_owned())
-}
-
-/// Parses the approach of the attackers.
-pub(crate) fn approach(label: &str) -> Result<brain::Approach, String> {
-    arena::approach_from_label(label).ok_or_else(|| {
-        let known: Vec<_> = arena::APPROACHES.map(arena::approach_label).into();
-        format!("take {}", known.join(" or "))
-    })
-}
-
-fn share(label: &str) -> Result<f32, String> {
-    label
-        .parse()
-        .ok()
-        .filter(|x| (0.0..=1.0).contains(x))
-        .ok_or_else(|| "take a share from 0 to 1".to_owned())
 }

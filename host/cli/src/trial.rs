@@ -12,18 +12,19 @@ use arena::{Recording, TextLog, TrialConfig, TrialReport, Watcher};
 use brain::Approach;
 use casebase::RetrievalSettings;
 use clap::{Args, ValueEnum};
+use feed::recording::OpenLibrary;
+use feed::{CaseExplanations, Legged};
 use firmware_build::Install;
 use hil_sim::{Backend, Configuration, NativeBackend, QemuBackend, Scenario};
 use page::Powers;
 use study::learning::{Change, Edit, LearnError, RETRIEVAL, TrialRecorder};
 
 use crate::Failure;
-use crate::failure::FirmwareError;
-use crate::live::{CaseExplanations, Legged, PageArgs, stay};
+use crate::args::page::{PageArgs, stay};
+use crate::args::parsers::{opponents, profile, scenario};
 use crate::output::{self, note};
-use crate::picture::SnapshotError;
-use crate::replay::OpenLibrary;
-use crate::setup::{SetupArgs, opponents, profile, scenario};
+use crate::picture::{SnapshotError, Unwritten};
+use crate::setup::SetupArgs;
 
 /// Settings of a trial.
 #[derive(Debug, Args)]
@@ -102,10 +103,8 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
         record(args, recorder, file)?;
     }
     if let Some(file) = svg {
-        fs::write(file, arena::picture(&recording)).map_err(|error| Failure::Picture {
-            file: file.to_owned(),
-            error: SnapshotError::Write(error),
-        })?;
+        fs::write(file, arena::picture(&recording))
+            .map_err(|error| Unwritten { file: file.to_owned(), error: SnapshotError::Write(error) })?;
     }
     let mut out = output::lines();
     if args.json {
@@ -145,7 +144,7 @@ fn record(args: &TrialArgs, recorder: &TrialRecorder, file: &Path) -> Result<(),
     for (name, value) in described(&setup.settings).into_iter().filter(|one| !usual.contains(one)) {
         let change = Change::Setting(name, value);
         let changed = library.edited(&Edit { case: RETRIEVAL.to_owned(), change });
-        library = changed.map_err(|error| Failure::Learning(LearnError::Library(error)))?;
+        library = changed.map_err(LearnError::Library)?;
     }
     let world = study::learning::world_of_trials(args.profile);
     let collected = recorder.collected(&library, &world, args.opponents.label());
@@ -185,20 +184,19 @@ fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialRepo
         BackendLabel::Native => Box::new(NativeBackend::new(base)),
         BackendLabel::Qemu => Box::new(qemu(args, &library_handle)?),
     };
-    arena::run(&config, backend, watchers).map_err(Failure::Trial)
+    Ok(arena::run(&config, backend, watchers)?)
 }
 
 /// QEMU with freshly built firmware; the user's own library goes into the robots' flash beside it.
 fn qemu(args: &TrialArgs, library_handle: &LibraryHandle) -> Result<QemuBackend, Failure> {
-    firmware_build::ensure_qemu(Install::ForUser).map_err(FirmwareError::Qemu)?;
+    firmware_build::ensure_qemu(Install::ForUser)?;
     let image =
-        firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::ImageBody::Legged)
-            .map_err(FirmwareError::Build)?;
+        firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::ImageBody::Legged)?;
     let backend = QemuBackend::new(image);
     if args.setup.is_built_in() {
         return Ok(backend);
     }
-    Ok(backend.with_library(library_handle.base().bytes()).map_err(FirmwareError::Library)?)
+    Ok(backend.with_library(library_handle.base().bytes())?)
 }
 
 impl TrialArgs {

@@ -2,7 +2,6 @@
 //! use: `control` starts it for each robot of `--robots sim://HOST`; by hand it helps to find out why one
 //! does not run.
 
-use std::fmt;
 use std::io::{self, BufRead as _};
 use std::net::{SocketAddr, ToSocketAddrs as _};
 use std::path::PathBuf;
@@ -14,13 +13,15 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use brain::BrainConfig;
 use casebase::GoalEnd;
 use clap::Args;
-use host::shell::key::{self, KeyError};
+use host::shell::key;
 use protocol::frame::TeamKey;
 use protocol::{RobotId, TeamId};
 use rules::{Colour, League};
-use virtual_robot::{Options, RunError, parent_gone, run as play};
+use thiserror::Error;
+use virtual_robot::{Options, parent_gone, run as play};
 
 use crate::Failure;
+use crate::args::parsers::{colour, goal, host_address, league, robot_id};
 use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::output::note;
 
@@ -37,7 +38,7 @@ pub(crate) struct VirtualRobotArgs {
     #[arg(long, value_parser = league, default_value = "division-b")]
     league: League,
     /// Its host, as HOST:PORT.
-    #[arg(long, value_parser = address)]
+    #[arg(long, value_parser = host_address)]
     host: SocketAddr,
     /// The simulator, as HOST or HOST:PORT; without a port the league's for its team, 10301 blue, 10302
     /// yellow.
@@ -85,7 +86,7 @@ pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
         host: args.host,
         simulator: simulator(&args.simulator, args.team)?,
     };
-    play(&options, base, &end).map_err(RobotError::Run)?;
+    play(&options, base, &end)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -97,7 +98,7 @@ fn key_of_parent() -> Result<TeamKey, Failure> {
 
 fn key_of_file(file: Option<&std::path::Path>) -> Result<TeamKey, Failure> {
     let Some(file) = file else { return Ok(TeamKey::ZERO) };
-    let read = key::read(file).map_err(RobotError::KeyFile)?;
+    let read = key::read(file)?;
     if let Some(warning) = read.warning {
         note!("warning: {warning}");
     }
@@ -115,58 +116,12 @@ fn simulator(text: &str, team: Colour) -> Result<SocketAddr, Failure> {
 }
 
 /// Why a virtual robot cannot run.
-#[derive(Debug)]
-pub(crate) enum RobotError {
-    /// It has no socket.
-    Run(RunError),
-    /// Standard input begins with something else than a key: what.
+#[derive(Debug, Error)]
+enum RobotError {
+    /// Standard input begins with something else than a key.
+    #[error("--with-parent: standard input begins with {0}, no key")]
     NoKey(String),
-    /// The key's file cannot be used.
-    KeyFile(KeyError),
     /// `--simulator` names no host that is known.
+    #[error("unknown host in --simulator {0}; give HOST or HOST:PORT")]
     UnknownSimulator(String),
-}
-
-impl From<RobotError> for Failure {
-    fn from(error: RobotError) -> Self {
-        Self::Robot(error)
-    }
-}
-
-impl fmt::Display for RobotError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Run(error) => write!(f, "{error}"),
-            Self::NoKey(what) => write!(f, "--with-parent: standard input begins with {what}, no key"),
-            Self::KeyFile(error) => write!(f, "{error}"),
-            Self::UnknownSimulator(text) => {
-                write!(f, "unknown host in --simulator {text}; give HOST or HOST:PORT")
-            }
-        }
-    }
-}
-
-fn address(text: &str) -> Result<SocketAddr, String> {
-    let found = text.to_socket_addrs().ok().and_then(|mut found| found.next());
-    found.ok_or_else(|| "expected HOST:PORT that the network can resolve".to_owned())
-}
-
-fn robot_id(text: &str) -> Result<RobotId, String> {
-    let number: u8 = text.parse().map_err(|_| "expected a number from 0 to 15".to_owned())?;
-    RobotId::try_from(number).map_err(|error| error.to_string())
-}
-
-fn colour(text: &str) -> Result<Colour, String> {
-    let known = [Colour::Blue, Colour::Yellow].into_iter().find(|colour| colour.label() == text);
-    known.ok_or_else(|| "expected blue or yellow".to_owned())
-}
-
-fn league(text: &str) -> Result<League, String> {
-    let known = [League::Ssl2013, League::DivisionB, League::DivisionA];
-    let known = known.into_iter().find(|league| league.name() == text);
-    known.ok_or_else(|| "expected ssl-2013, division-b or division-a".to_owned())
-}
-
-fn goal(text: &str) -> Result<GoalEnd, String> {
-    GoalEnd::from_label(text).ok_or_else(|| "expected yellow (the goal at -x) or cyan (at +x)".to_owned())
 }

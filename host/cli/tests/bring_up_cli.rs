@@ -99,7 +99,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn the_host_prints_what_the_robot_found_with_each_fault_and_a_third_of_the_packets_lost() {
+fn bring_up_prints_the_robots_findings_with_a_third_of_the_packets_lost() {
     for (name, fault) in Fault::EXAMPLES {
         let (output, found) = played(name, fault, 0.3, &["--json"]);
         let lines: Vec<Value> = text(&output.stdout)
@@ -145,7 +145,7 @@ fn as_text_a_failed_check_says_what_to_look_at_and_the_last_line_counts() {
 }
 
 #[test]
-fn where_nothing_arrives_or_another_robot_is_asked_for_the_error_says_what_to_look_at() {
+fn silence_or_another_robot_is_an_error_that_names_what_to_look_at() {
     let silent = UdpSocket::bind("127.0.0.1:0").expect("a port");
     let robots = format!("udp://{}", silent.local_addr().expect("an address"));
     let output = onetwo(&robots, "silent", &["--patience", "0.5"]);

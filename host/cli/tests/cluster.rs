@@ -217,7 +217,7 @@ fn head(file: &Path, key: &str) -> String {
 }
 
 #[test]
-fn merge_refuses_shards_of_another_library_world_settings_or_program_with_both_values() {
+fn merge_refuses_shards_of_other_libraries_settings_or_programs() {
     let other = |name: &str, command: &[&str], more: &[&str]| {
         let out = scratch(&format!("other-{name}"));
         succeeds(&of_array(command, &out, 1).output().unwrap());

@@ -407,7 +407,7 @@ fn a_pinned_referee_is_obeyed_and_the_other_one_reported() {
 }
 
 #[test]
-fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_reported() {
+fn finding_10_on_a_slow_line_halt_overtakes_snapshots_and_the_rate_is_told() {
     /// Bytes a second of a line with 115,200 bit/s.
     const RATE: f64 = 11_520.0;
     /// Bytes that may come before HALT: 0.2 s of the line; 22,000 before.

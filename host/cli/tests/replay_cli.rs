@@ -330,7 +330,7 @@ fn asked(arguments: &[&str], lines: &str) -> Vec<Value> {
 }
 
 #[test]
-fn from_its_trace_a_match_gives_the_same_ledger_and_problems_that_explain_its_decisions() {
+fn a_trace_gives_the_matchs_ledger_and_problems_that_explain_its_decisions() {
     let (played, file) = recorded("ledger", "5");
     let replayed = json(&[&file], 0);
     for team in ["blue", "yellow"] {

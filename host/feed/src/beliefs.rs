@@ -14,7 +14,7 @@ use rules::Colour;
 /// If a robot of ours is nearer to the ball than this, no opponent is labelled as its marker, m.
 const AT_BALL: f32 = 0.5;
 /// Radius of the ring around an opponent, m: wider than any robot.
-const RING: f32 = 0.14;
+const RING_RADIUS_M: f32 = 0.14;
 
 /// Beliefs of each team about the other.
 #[derive(Debug)]
@@ -59,7 +59,7 @@ fn shapes(opponent: &Detected, us: Colour, view: &View, flip: Flip) -> Vec<Shape
         [milli(at.x()), milli(at.y())]
     };
     let at = place(opponent.at);
-    let ring = |note| Shape::Ellipse { at, radii: [RING; 2], tone: Tone::Plain, fill: false, note };
+    let ring = |note| Shape::Ellipse { at, radii: [RING_RADIUS_M; 2], tone: Tone::Plain, fill: false, note };
     let mut out = vec![ring(note(opponent, us))];
     let Some(tactic) = opponent.tactic else { return out };
     let marked = opponent.follows.and_then(|id| view.our(id));

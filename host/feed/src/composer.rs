@@ -2,6 +2,7 @@
 //! over time.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use arena::cases::LibraryHandle;
 use casebase::CaseBase;
@@ -10,10 +11,10 @@ use hil_sim::small_size::referee::InternalReferee;
 use host::Host;
 use host::health_checks::HealthChecks;
 use host::referee::Game;
-use host::world::{Ball, World};
+use host::world::{Ball, Robot, World};
 use page::{
-    DeferredScene, Field, Gauge, Layer, LogLevel, Match, MatchEvent, Scene, SceneRobot, Shape, TeamSheet,
-    milli,
+    DeferredScene, Field, Gauge, Layer, LogLevel, Match, MatchEvent, ProgramLog, Scene, SceneBall,
+    SceneRobot, Shape, TeamSheet, milli,
 };
 use protocol::Instant;
 use rules::limits::BALL_RADIUS;
@@ -26,39 +27,38 @@ use super::layers;
 use super::match_events::EventFeed;
 use super::minds::{self, Clocks, Faults};
 use super::names::Names;
-use super::overlay_builder::{OverlayBuilder, Picture};
+use super::overlay_builder::{OverlayBuilder, OverlayInput};
 use super::possession::Possession;
 use super::raw::Images;
 use super::windows::Links;
 use super::{spaced, team};
-use crate::output::program_log;
-use crate::replay::phase_description;
 
 /// Length of the ball's trail, s.
 const TRAIL_S: f64 = 1.5;
 /// Number of points of the ball's prediction, one each tenth of a second; it ends at the stop position.
-const AHEAD: usize = 15;
+const PREDICTED_POINTS: usize = 15;
 
 /// Inputs of a scene.
-pub(crate) struct Moment<'a> {
+pub struct Moment<'a> {
     /// Seconds since the start.
-    pub(crate) t: f64,
+    pub t: f64,
     /// On the hosts' clock.
-    pub(crate) now: Instant,
+    pub now: Instant,
     /// The host whose world is displayed.
-    pub(crate) feed: &'a Host,
+    pub feed: &'a Host,
     /// The hosts whose robots' states are displayed.
-    pub(crate) hosts: &'a [&'a Host],
+    pub hosts: &'a [&'a Host],
     /// The true state, in a simulation.
-    pub(crate) truth: Option<&'a Truth>,
+    pub truth: Option<&'a Truth>,
     /// The simulation's own referee.
-    pub(crate) referee: Option<&'a InternalReferee>,
+    pub referee: Option<&'a InternalReferee>,
     /// Measurements of the loop itself.
-    pub(crate) gauges: Vec<Gauge>,
+    pub gauges: Vec<Gauge>,
 }
 
 /// Fills scenes.
-pub(crate) struct Composer {
+pub struct Composer {
+    log: Arc<ProgramLog>,
     base: Option<CaseBase<'static>>,
     names: Names,
     images: Images,
@@ -74,14 +74,15 @@ pub(crate) struct Composer {
     possession: Possession,
     overlay_builder: OverlayBuilder,
     match_events: Vec<MatchEvent>,
-    /// What alarms were about when a scene was composed last.
+    /// Subjects of the alarms of the last scene.
     alarmed: Vec<String>,
 }
 
 impl Composer {
-    /// For matches with these cases.
-    pub(crate) fn new(library_handle: Option<&LibraryHandle>) -> Self {
+    /// A composer for matches with these cases; faults of robots and alarms go to `log` too.
+    pub fn new(library_handle: Option<&LibraryHandle>, log: Arc<ProgramLog>) -> Self {
         Self {
+            log,
             base: library_handle.map(LibraryHandle::lasting_base),
             names: Names::new(library_handle),
             images: Images::default(),
@@ -102,29 +103,29 @@ impl Composer {
     }
 
     /// A datagram of the vision.
-    pub(crate) fn vision(&mut self, bytes: &[u8]) {
+    pub fn vision(&mut self, bytes: &[u8]) {
         self.images.receive(bytes);
         self.cameras.receive(bytes);
     }
 
     /// A datagram of the referee; `own` where the simulation's referee is part of the moment too.
-    pub(crate) fn referee(&mut self, bytes: &[u8], t: f64, own: bool) {
+    pub fn referee(&mut self, bytes: &[u8], t: f64, own: bool) {
         self.events.packet(bytes, t, own, &mut self.match_events);
     }
 
     /// Events since the last call.
-    pub(crate) fn take_match_events(&mut self) -> Vec<MatchEvent> {
+    pub fn take_match_events(&mut self) -> Vec<MatchEvent> {
         std::mem::take(&mut self.match_events)
     }
 
     /// The scene of a moment: what is known at once, and what the page's thread computes from a snapshot.
-    pub(crate) fn compose(&mut self, moment: Moment<'_>) -> DeferredScene {
+    pub fn compose(&mut self, moment: Moment<'_>) -> DeferredScene {
         let Moment { t, now, feed, .. } = moment;
         let (world, game, field) = (feed.world(), feed.game(), feed.field());
         for host in moment.hosts {
             self.cycles[host.settings().us as usize].receive(host, t, &self.names, &mut self.match_events);
             for description in self.faults.look(host, now) {
-                program_log().add(LogLevel::Warning, "robots", Some(t), &description);
+                self.log.add(LogLevel::Warning, "robots", Some(t), &description);
                 let team = Some(team(host.settings().us));
                 self.match_events.push(MatchEvent { team, ..MatchEvent::fault(t, description) });
             }
@@ -138,7 +139,7 @@ impl Composer {
                 let (source, heading) = (format!("{} host", us.label()), found.heading());
                 let matter = format!("{source}: {heading}");
                 if !self.alarmed.contains(&matter) {
-                    program_log().add(LogLevel::Alarm, &source, Some(t), &format!("{heading}: {found}"));
+                    self.log.add(LogLevel::Alarm, &source, Some(t), &format!("{heading}: {found}"));
                 }
                 alarmed.push(matter);
             }
@@ -168,24 +169,18 @@ impl Composer {
                 let colour = robot.who.colour;
                 let host = moment.hosts.iter().find(|host| host.settings().us == colour);
                 let played = plays.iter().find(|(team, _)| *team == colour).map(|(_, played)| played);
-                let at = robot.pose.position;
                 let detail =
                     host.and_then(|host| minds::detail(host, robot, played, names, clocks, (now, t)));
                 let (detail, aim) = detail.unzip();
                 aims.extend(aim.flatten());
                 SceneRobot {
-                    team: team(colour),
-                    id: robot.who.id.number(),
-                    at: [milli(at.x()), milli(at.y())],
-                    heading: milli(robot.pose.heading.radians()),
-                    velocity: [milli(robot.velocity.x()), milli(robot.velocity.y())],
-                    confidence: milli(robot.confidence),
                     detail,
                     vitals: host.and_then(|host| {
                         let link = moment.hosts.iter().position(|other| other.settings().us == colour);
                         let link = link.and_then(|i| links[i].get(&robot.who.id.number())).copied();
                         minds::vitals(host, robot, now, link.unwrap_or_default())
                     }),
+                    ..scene_robot(robot)
                 }
             })
             .collect();
@@ -207,7 +202,6 @@ impl Composer {
         gauges.extend(moment.gauges);
         let scene = Scene {
             t,
-            field: field_of(&field),
             ball: world.ball.map(|ball| self.ball(t, &ball, world)),
             robots,
             raw: self.images.seen(),
@@ -217,9 +211,9 @@ impl Composer {
             cameras: self.cameras.look(t),
             gauges,
             alarms,
-            ..Scene::default()
+            ..scene_of(t, &World::default(), &field)
         };
-        let picture = Picture {
+        let input = OverlayInput {
             t,
             world: world.clone(),
             game: game.clone(),
@@ -231,11 +225,12 @@ impl Composer {
             },
             aims,
         };
-        self.overlay_builder.deferred_scene(scene, picture)
+        self.overlay_builder.deferred_scene(scene, input)
     }
 
-    fn ball(&mut self, t: f64, ball: &Ball, world: &World) -> page::SceneBall {
-        let at = [milli(ball.position.x()), milli(ball.position.y())];
+    fn ball(&mut self, t: f64, ball: &Ball, world: &World) -> SceneBall {
+        let seen = scene_ball(ball);
+        let at = seen.at;
         if self.trail.back().is_some_and(|(last, _)| *last > t) {
             self.trail.clear();
         }
@@ -247,24 +242,53 @@ impl Composer {
         }
         let rests = ball.rests_in(&world.models);
         let moves = ball.velocity.norm() > 0.05 || ball.height > 0.0;
-        let steps = if moves { AHEAD.min((rests * 10.0).ceil().max(0.0) as usize) } else { 0 };
+        let steps = if moves { PREDICTED_POINTS.min((rests * 10.0).ceil().max(0.0) as usize) } else { 0 };
         let ahead = (0..=steps).map(|step| {
             let later = ball.after((step as f32 * 0.1).min(rests), &world.models).position;
             [milli(later.x()), milli(later.y())]
         });
-        page::SceneBall {
-            at,
-            height: milli(ball.height),
-            velocity: [milli(ball.velocity.x()), milli(ball.velocity.y())],
-            confidence: milli(ball.confidence),
-            trail: self.trail.iter().map(|(_, at)| *at).collect(),
-            ahead: ahead.collect(),
-        }
+        SceneBall { trail: self.trail.iter().map(|(_, at)| *at).collect(), ahead: ahead.collect(), ..seen }
+    }
+}
+
+/// The scene of anybody's positions: field, ball and robots, with nothing that a host of ours would know.
+/// `t` in s since the start; layers, events and the score are the caller's to add.
+pub fn scene_of(t: f64, world: &World, field: &FieldSpec) -> Scene {
+    Scene {
+        t,
+        field: field_of(field),
+        ball: world.ball.as_ref().map(scene_ball),
+        robots: world.robots().map(scene_robot).collect(),
+        ..Scene::default()
+    }
+}
+
+fn scene_ball(ball: &Ball) -> SceneBall {
+    SceneBall {
+        at: [milli(ball.position.x()), milli(ball.position.y())],
+        height: milli(ball.height),
+        velocity: [milli(ball.velocity.x()), milli(ball.velocity.y())],
+        confidence: milli(ball.confidence),
+        ..SceneBall::default()
+    }
+}
+
+fn scene_robot(robot: &Robot) -> SceneRobot {
+    let at = robot.pose.position;
+    SceneRobot {
+        team: team(robot.who.colour),
+        id: robot.who.id.number(),
+        at: [milli(at.x()), milli(at.y())],
+        heading: milli(robot.pose.heading.radians()),
+        velocity: [milli(robot.velocity.x()), milli(robot.velocity.y())],
+        confidence: milli(robot.confidence),
+        detail: None,
+        vitals: None,
     }
 }
 
 /// A field in the page's format.
-pub(crate) fn field_of(field: &FieldSpec) -> Field {
+pub fn field_of(field: &FieldSpec) -> Field {
     Field {
         length: milli(field.length),
         width: milli(field.width),
@@ -285,8 +309,8 @@ pub(crate) fn field_of(field: &FieldSpec) -> Field {
 
 fn sheet(game: &Game, referee: Option<&InternalReferee>, seen: &Possession) -> Match {
     let mut out = Match {
-        phase: phase_description(game.phase),
-        next: game.next.map(phase_description).unwrap_or_default(),
+        phase: game.phase.to_string(),
+        next: game.next.map(|phase| phase.to_string()).unwrap_or_default(),
         stage: spaced(&format!("{:?}", game.stage)),
         stage_left: game.stage_time_left.map(milli),
         action_left: game.action_time_left.map(milli),

@@ -4,11 +4,11 @@ use host::Host;
 use protocol::Who;
 use serde::Serialize;
 
-use crate::live::description;
+use crate::description;
 
 /// A robot's current directive and what decided it; places in m, field frame.
 #[derive(Debug, Serialize)]
-pub(super) struct Decided {
+pub(crate) struct Decided {
     role: String,
     directive: String,
     why: String,
@@ -16,7 +16,7 @@ pub(super) struct Decided {
 
 impl Decided {
     /// Of the host of its team, where there is one and it commands the robot.
-    pub(super) fn of(hosts: &[&Host], who: Who) -> Option<Self> {
+    pub(crate) fn of(hosts: &[&Host], who: Who) -> Option<Self> {
         let host = hosts.iter().find(|host| host.settings().us == who.colour)?;
         let order = host.orders().iter().find(|order| order.robot == who.id)?;
         Some(Self {
@@ -27,7 +27,7 @@ impl Decided {
     }
 
     /// `kicker: kick at (1.20, -0.45), 6.2 m/s (the best target for the ball, 0.80 m of room)`.
-    pub(super) fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let Self { role, directive, why } = self;
         format!("{role}: {directive} ({why})")
     }

@@ -15,7 +15,7 @@ pub(crate) fn place(at: impl Into<geometry::Point<geometry::Field>>) -> String {
 }
 
 /// `FirstHalfPre` as `first half pre`; text in brackets stays.
-pub(crate) fn spaced(name: &str) -> String {
+pub fn spaced(name: &str) -> String {
     let mut out = String::new();
     let mut before = ' ';
     for letter in name.chars() {
@@ -112,7 +112,7 @@ fn kick(order: KickOrder) -> String {
     }
 }
 
-/// Where a robot goes by its directive, and where it sends the ball.
+/// Places that a robot goes to by its directive, and that it sends the ball to.
 pub(super) fn aims(directive: &Directive) -> (Option<[f32; 2]>, Option<[f32; 2]>) {
     let to = |point: WirePoint| {
         let point: geometry::Point<geometry::Field> = point.into();

@@ -13,7 +13,7 @@ const VISION_RATE: f32 = 50.0;
 /// Longest round trip: two periods of the radio, ms.
 const TRIP_MS: f32 = 40.0;
 /// Largest loss of frames, percent.
-const LOSS: f32 = 10.0;
+const LOSS_MAX_PERCENT: f32 = 10.0;
 /// Longest tick, ms: brains step every 10 ms.
 const TICK_MS: f32 = 10.0;
 
@@ -78,8 +78,20 @@ pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge>
             "ms",
             Some(TRIP_MS),
         ));
-        out.push(gauge(&group, "worst loss to robots", worst(&|link| link.loss_down()), "%", Some(LOSS)));
-        out.push(gauge(&group, "worst loss from robots", worst(&|link| link.loss_up()), "%", Some(LOSS)));
+        out.push(gauge(
+            &group,
+            "worst loss to robots",
+            worst(&|link| link.loss_down()),
+            "%",
+            Some(LOSS_MAX_PERCENT),
+        ));
+        out.push(gauge(
+            &group,
+            "worst loss from robots",
+            worst(&|link| link.loss_up()),
+            "%",
+            Some(LOSS_MAX_PERCENT),
+        ));
         let refused: u32 = host.radio().refused().iter().sum();
         out.push(gauge(&group, "refused frames", refused as f32, "", None));
         let lowest = links.iter().filter_map(|link| link.battery()).fold(f32::INFINITY, f32::min);
@@ -117,6 +129,6 @@ fn learned(out: &mut Vec<Gauge>, host: &Host) {
 }
 
 /// Computing time of a tick.
-pub(crate) fn tick(took: Duration) -> Gauge {
+pub fn tick(took: Duration) -> Gauge {
     gauge("program", "a tick takes", took.as_secs_f32() * 1e3, "ms", Some(TICK_MS))
 }

@@ -14,7 +14,7 @@ use rules::{Colour, FieldSpec, Phase, RuleRole};
 use super::description::spaced;
 
 /// A keep-out zone larger than this share of the field is drawn by its border alone.
-const FILLED: f32 = 0.35;
+const FILLED_AREA_MAX: f32 = 0.35;
 
 /// A case in play by a team.
 pub(super) struct Played<'a> {
@@ -127,7 +127,7 @@ pub(super) fn of_cases(plays: &[(Colour, Played<'_>)]) -> [Layer; 3] {
     ]
 }
 
-/// What the teams' own strategies draw; `None` where no team has one.
+/// Drawings of the teams' own strategies; `None` where no team has one.
 pub(super) fn of_strategies(hosts: &[&Host]) -> Option<Layer> {
     let drawings: Vec<_> =
         hosts.iter().filter_map(|host| Some((host.settings().us, host.strategy_drawing()?))).collect();
@@ -155,7 +155,7 @@ pub(super) fn of_strategies(hosts: &[&Host]) -> Option<Layer> {
     (!drawings.is_empty()).then(|| Layer { name, label, on: true, shapes: shapes.collect() })
 }
 
-/// Where field players of each team must not be at the moment.
+/// Zones that field players of each team must keep out of at the moment.
 pub(super) fn keep_outs(
     field: &FieldSpec,
     phase: Phase<Colour>,
@@ -219,7 +219,7 @@ fn region(shape: &geometry::Shape<geometry::Field>, field: &FieldSpec, note: Str
             let [x0, y0] = [low.x().clamp(-x, x), low.y().clamp(-y, y)].map(milli);
             let [x1, y1] = [high.x().clamp(-x, x), high.y().clamp(-y, y)].map(milli);
             // Half a field, filled for each team, would hide everything: only its border is drawn.
-            let fill = (x1 - x0) * (y1 - y0) < FILLED * field.length * field.width;
+            let fill = (x1 - x0) * (y1 - y0) < FILLED_AREA_MAX * field.length * field.width;
             Shape::Polygon { points: vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]], tone, fill, note }
         }
     }

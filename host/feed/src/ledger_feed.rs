@@ -13,7 +13,7 @@ const TABLE_EVERY_S: f64 = 1.0;
 const LOOK_EVERY_S: f64 = TICK_US as f64 * 1e-6;
 
 /// Passes tables to the page.
-pub(crate) struct LedgerFeed {
+pub struct LedgerFeed {
     names: CaseNames,
     ledger: MatchLedger,
     looked: f64,
@@ -22,7 +22,7 @@ pub(crate) struct LedgerFeed {
 
 impl LedgerFeed {
     /// Names cases as the library does.
-    pub(crate) fn new(library_handle: Option<&LibraryHandle>) -> Self {
+    pub fn new(library_handle: Option<&LibraryHandle>) -> Self {
         Self {
             names: CaseNames::new(library_handle.map_or_else(Vec::new, LibraryHandle::names)),
             ledger: MatchLedger::default(),
@@ -32,7 +32,7 @@ impl LedgerFeed {
     }
 
     /// Keeps a ledger of what these hosts see, where there is no simulation that keeps one.
-    pub(crate) fn look(&mut self, t: f64, feed: &Host, hosts: &[&Host]) {
+    pub fn look(&mut self, t: f64, feed: &Host, hosts: &[&Host]) {
         if !(0.0..LOOK_EVERY_S).contains(&(t - self.looked)) {
             self.looked = t;
             self.ledger.look_through(feed, hosts, t);
@@ -40,14 +40,14 @@ impl LedgerFeed {
     }
 
     /// Sends the table of its own ledger if it is due, and in any case where the match is over.
-    pub(crate) fn send(&mut self, t: f64, hosts: &[&Host], over: bool, page: &Page) {
+    pub fn send(&mut self, t: f64, hosts: &[&Host], over: bool, page: &Page) {
         if self.is_due(t, over) {
             page.keep_cases(t, self.tables(&self.ledger, hosts, over));
         }
     }
 
     /// Sends the table of a simulation's ledger, likewise.
-    pub(crate) fn send_of(&mut self, ledger: &MatchLedger, t: f64, hosts: &[&Host], over: bool, page: &Page) {
+    pub fn send_of(&mut self, ledger: &MatchLedger, t: f64, hosts: &[&Host], over: bool, page: &Page) {
         if self.is_due(t, over) {
             page.keep_cases(t, self.tables(ledger, hosts, over));
         }

@@ -17,10 +17,10 @@ use super::description;
 use super::layers::{self, Played};
 
 /// The ball's trail, in ticks of 40 ms.
-const TRAIL: usize = 40;
+const TRAIL_TICKS: usize = 40;
 
 /// Keeps a trial's course for the page. Attackers are blue, opponents yellow.
-pub(crate) struct Legged {
+pub struct Legged {
     page: Page,
     base: CaseBase<'static>,
     beacons: Vec<(RobotId, Beacon)>,
@@ -30,7 +30,8 @@ pub(crate) struct Legged {
 }
 
 impl Legged {
-    pub(crate) fn new(page: Page, base: CaseBase<'static>) -> Self {
+    /// A feed of `page` for trials that are played with the cases of `base`.
+    pub fn new(page: Page, base: CaseBase<'static>) -> Self {
         Self { page, base, beacons: Vec::new(), newest: None, trail: Vec::new(), decided: None }
     }
 
@@ -165,7 +166,7 @@ impl Legged {
         game.teams.yellow.name = "opponents".into();
         game.teams.yellow.defends = 1;
         self.trail.push(at);
-        if self.trail.len() > TRAIL {
+        if self.trail.len() > TRAIL_TICKS {
             self.trail.remove(0);
         }
         Scene {
@@ -187,7 +188,7 @@ impl Legged {
     }
 
     /// The trial's page, which stays open.
-    pub(crate) fn into_page(self) -> Page {
+    pub fn into_page(self) -> Page {
         self.page
     }
 }

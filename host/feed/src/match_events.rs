@@ -7,12 +7,12 @@ use page::{MatchEvent, MatchEventKind, PageTeam, milli};
 use ssl::Message;
 use ssl::referee::Referee;
 
-use crate::replay::match_event::{self, Finder};
+use crate::referee_event::{RefereeEventFinder, RefereeEventKind};
 
 /// Detects new events.
 #[derive(Debug, Default)]
 pub(super) struct EventFeed {
-    finder: Finder,
+    finder: RefereeEventFinder,
     events: usize,
     kick: Option<Kick>,
 }
@@ -26,26 +26,26 @@ impl EventFeed {
         for found in found {
             let name = found.name.replace('_', " ").to_lowercase();
             let kind = match found.kind {
-                match_event::Kind::Command => MatchEventKind::Command,
-                match_event::Kind::Stage => MatchEventKind::Stage,
-                match_event::Kind::Goal => MatchEventKind::Goal,
-                match_event::Kind::GameEvent if own => continue,
-                match_event::Kind::GameEvent => foul_or_event(&found.name),
-                match_event::Kind::Card => MatchEventKind::Foul,
-                match_event::Kind::MaxBots
-                | match_event::Kind::TeamName
-                | match_event::Kind::DesignatedPosition => MatchEventKind::Event,
+                RefereeEventKind::Command => MatchEventKind::Command,
+                RefereeEventKind::Stage => MatchEventKind::Stage,
+                RefereeEventKind::Goal => MatchEventKind::Goal,
+                RefereeEventKind::GameEvent if own => continue,
+                RefereeEventKind::GameEvent => foul_or_event(&found.name),
+                RefereeEventKind::Card => MatchEventKind::Foul,
+                RefereeEventKind::MaxBots
+                | RefereeEventKind::TeamName
+                | RefereeEventKind::DesignatedPosition => MatchEventKind::Event,
             };
             // Numbers are stored in the record and left out of the label.
             let description = match found.kind {
-                match_event::Kind::Goal => format!("goal, {}", found.description),
-                match_event::Kind::GameEvent if !found.description.is_empty() => {
+                RefereeEventKind::Goal => format!("goal, {}", found.description),
+                RefereeEventKind::GameEvent if !found.description.is_empty() => {
                     format!("{name} ({})", found.description)
                 }
-                match_event::Kind::Card
-                | match_event::Kind::MaxBots
-                | match_event::Kind::TeamName
-                | match_event::Kind::DesignatedPosition => format!("{name}, {}", found.description),
+                RefereeEventKind::Card
+                | RefereeEventKind::MaxBots
+                | RefereeEventKind::TeamName
+                | RefereeEventKind::DesignatedPosition => format!("{name}, {}", found.description),
                 _ => name,
             };
             let team = whose(&description);

@@ -6,17 +6,19 @@
 mod kick_test;
 mod situation;
 
-use std::sync::atomic::Ordering;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use arena::CaseNames;
 use arena::cases::LibraryHandle;
-use arena::game::{Game, GameConfig, GameReport, TICK_US, Watcher, Watchers};
+use arena::game::{Game, GameConfig, GameError, GameReport, TICK_US, Watcher, Watchers};
 use foreign::{excerpt, printable};
 use geometry::Point;
 use hil_sim::NativeBackend;
-use page::{MatchEnd, MatchEvent, Page, UserRequest};
+use host::run::change_text;
+use page::{MatchEnd, MatchEvent, Page, ProgramLog, UserRequest};
 use protocol::{RobotId, Who};
 use rules::Colour;
 use rules::state::RefereeCommand;
@@ -26,11 +28,8 @@ use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
 use super::{
     Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, SnapshotRequest, Snapshots, change_of,
-    colour, description_of, description_of_test, test_of,
+    colour, test_of,
 };
-use crate::Failure;
-use crate::output::note;
-use crate::stop::stopped_by_hand;
 use crate::workbench::SharedLibrary;
 
 /// If the match is farther behind the clock than this, s, the clock is reset: the match does not run faster
@@ -41,20 +40,35 @@ const SCENE_EVERY_MAX_S: f64 = 0.2;
 /// Longest part of a name sent by a viewer that is quoted in an answer, characters.
 const NAME_LEN: usize = 60;
 /// Answer to a viewer that asks for another match.
-const RECORDED: &str = "a match that is recorded cannot start again";
+const RESTART_REFUSED: &str = "a match that is recorded cannot start again";
 /// Period of polling for requests while paused.
-const IDLE: Duration = Duration::from_millis(10);
+const POLL_EVERY: Duration = Duration::from_millis(10);
 
 /// A match and its page.
-pub(crate) struct MatchRunner {
+pub struct MatchRunner<'f> {
     config: GameConfig,
     library: SharedLibrary,
     page: Page,
     speed: f32,
-    /// It is recorded: it cannot be restarted.
+    /// Recorded, so that it cannot be restarted.
     recorded: bool,
     /// Moments of this match and those before it.
     snapshots: Snapshots,
+    log: Arc<ProgramLog>,
+    /// Ends the match when it is set.
+    stopped: &'f AtomicBool,
+}
+
+/// Pace, log and end of a run.
+pub struct RunSettings<'f> {
+    /// Simulated seconds a second at the start; viewers can change it.
+    pub speed: f32,
+    /// The match is recorded: it cannot be restarted.
+    pub recorded: bool,
+    /// Takes alarms and faults of robots.
+    pub log: Arc<ProgramLog>,
+    /// Ends the match when it is set.
+    pub stopped: &'f AtomicBool,
 }
 
 /// State of the viewers' controls.
@@ -72,27 +86,24 @@ struct UserControls {
     over: bool,
 }
 
-/// How a run ends.
-pub(crate) enum End {
+/// End of a run.
+pub enum End {
     /// The match is over; its report.
     Over(GameReport),
     /// The operator ended the program.
     ByHand(GameReport),
 }
 
-impl MatchRunner {
-    pub(crate) fn new(
-        config: GameConfig,
-        library: SharedLibrary,
-        page: Page,
-        speed: f32,
-        recorded: bool,
-    ) -> Self {
-        Self { config, library, page, speed, recorded, snapshots: Snapshots::default() }
+impl<'f> MatchRunner<'f> {
+    /// A match of `config`, played at the clock's pace times `speed` until `stopped` is set; alarms go to
+    /// `log`. One that is recorded cannot be restarted.
+    pub fn new(config: GameConfig, library: SharedLibrary, page: Page, settings: RunSettings<'f>) -> Self {
+        let RunSettings { speed, recorded, log, stopped } = settings;
+        Self { config, library, page, speed, recorded, snapshots: Snapshots::default(), log, stopped }
     }
 
-    /// Plays until the match is over; `watch` gives the watchers of a match that starts.
-    pub(crate) fn play(&mut self, watcher: &mut dyn RestartWatcher) -> Result<End, Failure> {
+    /// Plays until the match is over.
+    pub fn play(&mut self, observer: &mut dyn MatchObserver) -> Result<End, GameError> {
         loop {
             let mut controls = UserControls {
                 paused: false,
@@ -104,14 +115,13 @@ impl MatchRunner {
                 reached: self.speed,
                 over: false,
             };
-            let report = self.one(&mut controls, watcher)?;
+            let report = self.one(&mut controls, observer)?;
             self.speed = controls.speed;
             match controls.restart {
                 Some(seed) => {
-                    self.restart(seed);
-                    watcher.restart();
+                    self.restart(seed, observer);
                 }
-                None if stopped_by_hand().load(Ordering::Relaxed) => return Ok(End::ByHand(report)),
+                None if self.stopped.load(Ordering::Relaxed) => return Ok(End::ByHand(report)),
                 None => return Ok(End::Over(report)),
             }
         }
@@ -119,26 +129,26 @@ impl MatchRunner {
 
     /// Keeps the page open after the match until the operator ends the program; the seed if another match is
     /// requested.
-    pub(crate) fn linger(&mut self) -> Option<u64> {
-        while !stopped_by_hand().load(Ordering::Relaxed) {
+    pub fn linger(&mut self) -> Option<u64> {
+        while !self.stopped.load(Ordering::Relaxed) {
             match self.page.next_request() {
-                Some(UserRequest::Restart { .. }) if self.recorded => self.page.refuse(RECORDED),
+                Some(UserRequest::Restart { .. }) if self.recorded => self.page.refuse(RESTART_REFUSED),
                 Some(UserRequest::Restart { seed }) => return Some(seed.unwrap_or(self.config.seed)),
                 Some(_) if self.recorded => self.page.refuse("the match is over"),
                 Some(_) => self.page.refuse("the match is over: start another one"),
                 None => {}
             }
-            thread::sleep(IDLE);
+            thread::sleep(POLL_EVERY);
         }
         None
     }
 
     /// Restarts with another seed, and with the cases that are on disk now.
-    pub(crate) fn restart(&mut self, seed: u64) {
+    pub fn restart(&mut self, seed: u64, observer: &mut dyn MatchObserver) {
         self.config.seed = seed;
         if let Err(failure) = self.library.read_again() {
             let description = format!("the cases stay as they were, their library is refused: {failure}");
-            note!("{}", printable(&description));
+            observer.note(&printable(&description));
             self.page.refuse(description);
         }
         if let Some(library_handle) = self.library.now() {
@@ -146,19 +156,20 @@ impl MatchRunner {
             self.config.cases = Some(library_handle.lasting_base());
         }
         self.page.clear();
+        observer.restart();
     }
 
     fn one(
         &mut self,
         controls: &mut UserControls,
-        watcher: &mut dyn RestartWatcher,
-    ) -> Result<GameReport, Failure> {
+        observer: &mut dyn MatchObserver,
+    ) -> Result<GameReport, GameError> {
         let config = self.config.clone();
         let library_handle = self.library.now();
         let mut backend = NativeBackend::new(config.cases.unwrap_or_default());
-        let mut game = Game::new(&config, &mut backend).map_err(Failure::Game)?;
+        let mut game = Game::new(&config, &mut backend)?;
         let mut feed = Feed {
-            composer: Composer::new(library_handle.as_ref()),
+            composer: Composer::new(library_handle.as_ref(), self.log.clone()),
             ledger: LedgerFeed::new(library_handle.as_ref()),
             parameters: ParameterFeed::default(),
             t: 0.0,
@@ -166,10 +177,10 @@ impl MatchRunner {
         let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u64;
         let mut displayed = f64::NEG_INFINITY;
         let mut tests = KickTests::default();
-        let stopped = stopped_by_hand();
+        let stopped = self.stopped;
         while game.now().0 / TICK_US < ticks && !game.is_over() && !stopped.load(Ordering::Relaxed) {
             while let Some(request) = self.page.next_request() {
-                let mut watchers = Watchers(vec![&mut feed, watcher.watcher()]);
+                let mut watchers = Watchers(vec![&mut feed, observer.watcher()]);
                 if let Some(told) = tell_host(&request, &mut game, &mut tests, &mut watchers) {
                     feed.parameters.hasten();
                     match told {
@@ -178,7 +189,7 @@ impl MatchRunner {
                     }
                     continue;
                 }
-                self.obey(&request, controls, &mut game, &mut backend).map_err(Failure::Game)?;
+                self.obey(&request, controls, &mut game, &mut backend)?;
             }
             if controls.restart.is_some() {
                 break;
@@ -191,7 +202,7 @@ impl MatchRunner {
             controls.steps = controls.steps.saturating_sub(1);
             let begun = Instant::now();
             feed.t = game.time();
-            game.step(&mut Watchers(vec![&mut feed, watcher.watcher()])).map_err(Failure::Game)?;
+            game.step(&mut Watchers(vec![&mut feed, observer.watcher()]))?;
             controls.took = (controls.took * 15 + begun.elapsed()) / 16;
             tests.tend(&mut game);
             let every = (SCENE_EVERY_S * f64::from(controls.speed)).min(SCENE_EVERY_MAX_S);
@@ -250,7 +261,7 @@ impl MatchRunner {
         controls: &mut UserControls,
         game: &mut Game<'b>,
         backend: &mut NativeBackend<'b>,
-    ) -> Result<(), arena::game::GameError> {
+    ) -> Result<(), GameError> {
         let t = game.time();
         let (mut noted, mut refused) = (None, None);
         let playing = |team: page::PageTeam, id: u8| {
@@ -269,7 +280,7 @@ impl MatchRunner {
                 controls.clock = (Instant::now(), t);
             }
             UserRequest::Restart { .. } if self.recorded => {
-                refused = Some(RECORDED.into());
+                refused = Some(RESTART_REFUSED.into());
             }
             UserRequest::Restart { seed } => controls.restart = Some(seed.unwrap_or(self.config.seed)),
             UserRequest::Situation { name } => {
@@ -353,7 +364,7 @@ fn tell_host(
             let team = colour(*team);
             change_of(key, *robot, value.as_ref()).and_then(|change| {
                 game.change(team, &change, watchers).map_err(|refused| refused.to_string())?;
-                Ok(format!("{}: {}", team.label(), description_of(&change)))
+                Ok(format!("{}: {}", team.label(), change_text(&change)))
             })
         }
         UserRequest::Kicks { team, robot, kicks } => tests
@@ -401,12 +412,14 @@ impl UserControls {
     }
 }
 
-/// The watcher of a match, which can be restarted with it.
-pub(crate) trait RestartWatcher {
+/// Whoever has the match played: watches it, and is told what the page's viewers do to it.
+pub trait MatchObserver {
     /// The watcher of the running match.
     fn watcher(&mut self) -> &mut dyn Watcher;
     /// Another match starts.
     fn restart(&mut self);
+    /// A line for the operator.
+    fn note(&mut self, line: &str);
 }
 
 /// Takes the packets that both teams receive.
@@ -427,7 +440,7 @@ impl Watcher for Feed {
 }
 
 /// A command by its name in the league.
-pub(crate) fn command_of(name: &str) -> Option<RefereeCommand> {
+pub fn command_of(name: &str) -> Option<RefereeCommand> {
     let of = |begin: &str| match name.strip_prefix(begin)? {
         "BLUE" => Some(Colour::Blue),
         "YELLOW" => Some(Colour::Yellow),

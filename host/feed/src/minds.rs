@@ -88,7 +88,7 @@ pub(super) fn detail(
     Some((detail, aim))
 }
 
-/// Whether a robot can be given a part in a case, as far as its host knows.
+/// True if a robot can be given a part in a case, as far as its host knows.
 pub(super) fn is_available(host: &Host, id: RobotId, now: Instant) -> bool {
     let received = host.quality(id).is_some_and(|quality| quality.is_present(now));
     received && host.beacon(id).is_some_and(|beacon| beacon.status.has(Status::AVAILABLE))

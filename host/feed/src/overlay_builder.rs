@@ -21,9 +21,9 @@ pub(super) struct Aim {
     pub(super) rule_role: RuleRole,
 }
 
-/// Snapshot of a moment, with all inputs of the overlays.
+/// Inputs of the overlays of a moment.
 #[derive(Clone, Debug)]
-pub(super) struct Picture {
+pub(super) struct OverlayInput {
     /// Seconds since the start.
     pub(super) t: f64,
     pub(super) world: World,
@@ -43,19 +43,19 @@ pub(super) struct OverlayBuilder {
 
 impl OverlayBuilder {
     /// The scene as it is, with the overlays deferred to the page's thread.
-    pub(super) fn deferred_scene(&self, scene: Scene, picture: Picture) -> DeferredScene {
+    pub(super) fn deferred_scene(&self, scene: Scene, input: OverlayInput) -> DeferredScene {
         let tactics = self.tactics.clone();
         DeferredScene::new(scene, move |scene| {
             // After a panic of another thread the stored state is still usable.
             let mut tactics = tactics.lock().unwrap_or_else(PoisonError::into_inner);
-            paint(scene, &picture, &mut tactics);
+            paint(scene, &input, &mut tactics);
         })
     }
 }
 
-fn paint(scene: &mut Scene, picture: &Picture, tactics: &mut Tactics) {
-    let Picture { world, game, field, .. } = picture;
-    for Aim { who, to, rule_role } in &picture.aims {
+fn paint(scene: &mut Scene, input: &OverlayInput, tactics: &mut Tactics) {
+    let OverlayInput { world, game, field, .. } = input;
+    for Aim { who, to, rule_role } in &input.aims {
         let (Some(robot), Some(own)) = (world.robot(*who), game.own_goal(who.colour)) else { continue };
         let paths = Paths { world, phase: game.phase, placement: game.placement, field, own };
         let displayed = scene
@@ -66,7 +66,7 @@ fn paint(scene: &mut Scene, picture: &Picture, tactics: &mut Tactics) {
             detail.intent.path = paths.to(robot, *to, *rule_role);
         }
     }
-    let [maps, above] = tactics.layers(picture);
+    let [maps, above] = tactics.layers(input);
     scene.layers.splice(0..0, maps);
     scene.layers.extend(above);
 }

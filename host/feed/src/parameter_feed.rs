@@ -19,7 +19,7 @@ const EVERY: Duration = Duration::from_secs(1);
 
 /// Passes lists to the page.
 #[derive(Default)]
-pub(crate) struct ParameterFeed {
+pub struct ParameterFeed {
     sent: Option<Instant>,
 }
 
@@ -28,9 +28,9 @@ pub(crate) struct ParameterFeed {
 struct TeamParameters {
     team: PageTeam,
     list: Vec<ParameterValue>,
-    /// What is learned of robots' kickers, by robot.
+    /// Learned gains of robots' kickers, by robot.
     kicks: Vec<LearnedValue>,
-    /// What is learned of the rolling ball, m/s².
+    /// Learned deceleration of the rolling ball, m/s².
     roll: Option<LearnedValue>,
     /// The test of a kicker, while there is one.
     test: Option<KickTest>,
@@ -79,13 +79,13 @@ struct LearnedValue {
 
 impl ParameterFeed {
     /// The next list is sent at once: a value has changed.
-    pub(crate) fn hasten(&mut self) {
+    pub fn hasten(&mut self) {
         self.sent = None;
     }
 
     /// Sends the lists of these hosts if they are due. `file`: the configuration and the name of the file
     /// that the only host was started with.
-    pub(crate) fn look(&mut self, hosts: &[&Host], file: Option<(&TeamConfig, Option<&str>)>, page: &Page) {
+    pub fn look(&mut self, hosts: &[&Host], file: Option<(&TeamConfig, Option<&str>)>, page: &Page) {
         if self.sent.is_some_and(|sent| sent.elapsed() < EVERY) {
             return;
         }
@@ -125,7 +125,7 @@ fn team(host: &Host, file: Option<(&TeamConfig, Option<&str>)>) -> Option<TeamPa
 }
 
 /// The change that a viewer asks for; an error says what its value must be.
-pub(crate) fn change_of(
+pub fn change_of(
     key: &str,
     robot: Option<u8>,
     value: Option<&serde_json::Value>,
@@ -136,25 +136,7 @@ pub(crate) fn change_of(
     Ok(ParameterChange { key: key.to_owned(), robot, value: value.transpose()? })
 }
 
-/// A change in words, for the page's events and the log.
-pub(crate) fn description_of(change: &ParameterChange) -> String {
-    let robot = change.robot.map(|robot| format!(" of robot {robot}")).unwrap_or_default();
-    match &change.value {
-        Some(value) => format!("{}{robot} is now {value}, by hand", change.key),
-        None => format!("{}{robot} is as if left out, by hand", change.key),
-    }
-}
-
 /// The test that a viewer asks for.
-pub(crate) fn test_of(robot: Option<u8>, kicks: u8) -> TestOrder {
+pub fn test_of(robot: Option<u8>, kicks: u8) -> TestOrder {
     robot.map_or(TestOrder::End, |robot| TestOrder::Kick { robot, kicks })
-}
-
-/// A test in words, for the page's events and the log.
-pub(crate) fn description_of_test(order: TestOrder) -> String {
-    match order {
-        TestOrder::Kick { robot, kicks } => format!("the kicker of robot {robot} is tested, {kicks} kicks"),
-        TestOrder::Stand => "all robots stand while the other team tests a kicker".to_owned(),
-        TestOrder::End => "the test of a kicker has ended".to_owned(),
-    }
 }

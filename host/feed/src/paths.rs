@@ -12,13 +12,13 @@ use rules::limits::ROBOT_RADIUS;
 use rules::{Colour, FieldSpec, Phase, RuleRole};
 
 /// Time from one point of a path to the next, s.
-const STEP: f32 = 0.1;
+const STEP_S: f32 = 0.1;
 /// Points of a path: what is farther is a straight line.
-const STEPS: usize = 15;
+const POINTS_MAX: usize = 15;
 /// A path ends this near its goal, m.
-const THERE: f32 = 0.03;
+const ARRIVED_WITHIN_M: f32 = 0.03;
 /// Least distance between bodies, and added to the rules' distances, m: as the robot's own.
-const MARGIN: f32 = 0.03;
+const MARGIN_M: f32 = 0.03;
 
 /// Plans the paths of one team's robots at a moment.
 pub(super) struct Paths<'a> {
@@ -42,16 +42,16 @@ impl Paths<'_> {
             placement: self.placement,
             ball_in_play: true,
         });
-        let regions = rules.forbidden.iter().map(|region| region.shape.grown(ROBOT_RADIUS + MARGIN));
+        let regions = rules.forbidden.iter().map(|region| region.shape.grown(ROBOT_RADIUS + MARGIN_M));
         let mut obstacles: Vec<_> = regions.map(Obstacle::region).collect();
         let standing = obstacles.len();
         let others = self.world.robots().filter(|other| other.who != robot.who);
-        let disc = 2.0 * ROBOT_RADIUS + MARGIN;
+        let disc = 2.0 * ROBOT_RADIUS + MARGIN_M;
         obstacles.extend(others.map(|other| Obstacle::robot(other.pose.position, other.velocity, disc)));
         obstacles.truncate(OBSTACLES_MAX);
         let (mut from, mut velocity) = (robot.pose.position, robot.velocity);
         let mut points = vec![from];
-        for _ in 0..STEPS {
+        for _ in 0..POINTS_MAX {
             let within = Some(rules.within.grown(-ROBOT_RADIUS));
             let course = Course {
                 from,
@@ -60,7 +60,7 @@ impl Paths<'_> {
                 limits: LIMITS,
                 obstacles: &obstacles,
                 within,
-                step: STEP,
+                step: STEP_S,
                 effort: EFFORT_MAX,
                 effort_to_leave: EFFORT_MAX,
                 checks: CHECKS_LONG,
@@ -68,14 +68,14 @@ impl Paths<'_> {
             let path = plan(&course);
             (from, velocity) = (path.next.position, path.next.velocity);
             points.push(from);
-            if from.distance(path.goal) < THERE {
+            if from.distance(path.goal) < ARRIVED_WITHIN_M {
                 break;
             }
             for other in &mut obstacles[standing..] {
-                other.shape = moved(other.shape, other.velocity * STEP);
+                other.shape = moved(other.shape, other.velocity * STEP_S);
             }
         }
-        if from.distance(to) > THERE {
+        if from.distance(to) > ARRIVED_WITHIN_M {
             points.push(to);
         }
         points.into_iter().map(|at| [milli(at.x()), milli(at.y())]).collect()
@@ -126,7 +126,7 @@ mod tests {
         let path = path(&[[1.0, 2.0]], [1.0, 0.0]);
         assert!(path.iter().all(|[_, y]| y.abs() < 1e-3), "{path:?}");
         let [x, _] = *path.last().unwrap();
-        assert!((x - 1.0).abs() < THERE && path.len() > 5, "{path:?}");
+        assert!((x - 1.0).abs() < ARRIVED_WITHIN_M && path.len() > 5, "{path:?}");
     }
 
     #[test]
@@ -140,6 +140,6 @@ mod tests {
     #[test]
     fn a_way_that_takes_longer_than_is_looked_ahead_goes_on_straight() {
         let path = path(&[], [4.0, 0.0]);
-        assert_eq!((path.len(), *path.last().unwrap()), (STEPS + 2, [4.0, 0.0]));
+        assert_eq!((path.len(), *path.last().unwrap()), (POINTS_MAX + 2, [4.0, 0.0]));
     }
 }

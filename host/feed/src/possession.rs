@@ -5,7 +5,7 @@ use host::world::World;
 use rules::{Colour, Phase, contact};
 
 /// A robot whose centre is nearer to the ball than this touches it, m.
-const TOUCH: f32 = contact::POSSESSION_WITHIN;
+const TOUCHES_WITHIN_M: f32 = contact::POSSESSION_WITHIN;
 /// Between two looks no more than this counts, s: what is longer is a gap.
 const GAP_S: f64 = 0.5;
 
@@ -25,7 +25,7 @@ impl Possession {
         let running = matches!(phase, Phase::Run | Phase::FreeKick(_) | Phase::Kickoff(_));
         let Some(ball) = world.ball.filter(|_| running) else { return };
         if let Some((robot, far)) = world.nearest(ball.position)
-            && far < TOUCH
+            && far < TOUCHES_WITHIN_M
         {
             self.holder = Some(robot.who.colour);
         }

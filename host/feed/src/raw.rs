@@ -9,7 +9,7 @@ use ssl::vision::{DetectionFrame, DetectionRobot, WrapperPacket};
 
 /// Number of newest packets that are kept: they hold a frame of each camera, of which a field has at most
 /// eight.
-const PACKETS: usize = 8;
+const PACKETS_MAX: usize = 8;
 /// A camera whose frame is older than the newest by more than this, s, is left out: it sees nothing any more.
 const OLD_S: f64 = 0.2;
 
@@ -25,7 +25,7 @@ impl Images {
     pub(super) fn receive(&mut self, bytes: &[u8]) {
         self.count += 1;
         // The oldest packet's buffer is used again.
-        let mut room = if self.packets.len() >= PACKETS {
+        let mut room = if self.packets.len() >= PACKETS_MAX {
             self.packets.pop_front().unwrap_or_default()
         } else {
             Vec::new()

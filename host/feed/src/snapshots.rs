@@ -11,13 +11,13 @@ const KEPT_MAX: usize = 20;
 
 /// The kept moments of a match.
 #[derive(Default)]
-pub(crate) struct Snapshots {
+pub struct Snapshots {
     kept: Vec<Snapshot>,
 }
 
-/// What a request about moments amounts to.
-pub(crate) enum SnapshotRequest<'s> {
-    /// It is about something else.
+/// Result of a request about moments.
+pub enum SnapshotRequest<'s> {
+    /// Another kind of request.
     Other,
     /// A moment was kept.
     Kept(String),
@@ -29,7 +29,7 @@ pub(crate) enum SnapshotRequest<'s> {
 
 impl Snapshots {
     /// Handles a request about moments; who drives the field returns to one.
-    pub(crate) fn ask(
+    pub fn ask(
         &mut self,
         request: &UserRequest,
         world: &World,
@@ -62,7 +62,7 @@ impl Snapshots {
     }
 
     /// The moments for the page, each as a file of it is.
-    pub(crate) fn tell(&self, page: &Page) {
+    pub fn tell(&self, page: &Page) {
         // Words and finite numbers: JSON can represent all of it.
         page.set_snapshots(serde_json::to_string(&self.kept).unwrap_or_default());
     }

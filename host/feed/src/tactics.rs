@@ -17,7 +17,7 @@ use protocol::RobotId;
 use rules::{Colour, Phase};
 
 use super::beliefs::Beliefs;
-use super::overlay_builder::Picture;
+use super::overlay_builder::OverlayInput;
 
 /// Period of the maps, s.
 const EVERY_S: f64 = 0.2;
@@ -25,11 +25,11 @@ const EVERY_S: f64 = 0.2;
 /// changes nothing.
 const TAKEN_S: f64 = 0.4;
 /// Length and width of a cell of the maps, m: three robots' widths.
-const CELL: f32 = 0.3;
+const CELL_M: f32 = 0.3;
 /// A map whose best place is worth less than this is empty.
-const WORTHLESS: f32 = 0.001;
+const WORTH_MIN: f32 = 0.001;
 /// What is worth less than this share of the best place is not drawn.
-const FAINT: f32 = 0.04;
+const DRAWN_SHARE_MIN: f32 = 0.04;
 
 /// State from one moment to the next.
 #[derive(Debug, Default)]
@@ -49,20 +49,20 @@ pub(super) struct Tactics {
 
 impl Tactics {
     /// The layers of a moment: maps, which are drawn under everything else, and the layers above.
-    pub(super) fn layers(&mut self, picture: &Picture) -> [[Layer; 2]; 2] {
-        let Picture { t, world, game, us, .. } = picture;
+    pub(super) fn layers(&mut self, input: &OverlayInput) -> [[Layer; 2]; 2] {
+        let OverlayInput { t, world, game, us, .. } = input;
         // Another match, or a recording from its beginning.
         if self.last.replace(*t).is_some_and(|last| *t < last) {
             *self = Self { last: Some(*t), ..Self::default() };
         }
-        self.see_who_attacks(picture);
-        let view = |us: Colour| view(picture, us).zip(game.own_goal(us).map(Flip::defending));
+        self.see_who_attacks(input);
+        let view = |us: Colour| view(input, us).zip(game.own_goal(us).map(Flip::defending));
         let views = [Colour::Yellow, Colour::Blue].map(|team| (team, view(team)));
         let of = |us: Colour| views.iter().find(|(team, _)| *team == us).and_then(|(_, view)| view.as_ref());
         if self.made.is_none_or(|made| t - made >= EVERY_S) {
             self.made = Some(*t);
             let kicks = self.kicks.get_or_insert_with(|| {
-                Kicks::new(PassConstants::of(picture.league), world.models.ground, world.models.chip)
+                Kicks::new(PassConstants::of(input.league), world.models.ground, world.models.chip)
             });
             let attack = self.attackers.and_then(of);
             self.maps = attack.map_or_else(Default::default, |(view, flip)| maps(view, *flip, kicks));
@@ -104,16 +104,16 @@ impl Tactics {
         ]
     }
 
-    fn see_who_attacks(&mut self, picture: &Picture) {
-        let ball = picture.world.ball.map(|ball| ball.position);
-        let Some((nearest, _)) = ball.and_then(|ball| picture.world.nearest(ball)) else { return };
+    fn see_who_attacks(&mut self, input: &OverlayInput) {
+        let ball = input.world.ball.map(|ball| ball.position);
+        let Some((nearest, _)) = ball.and_then(|ball| input.world.nearest(ball)) else { return };
         let team = nearest.who.colour;
         if self.attackers == Some(team) {
             self.nearer_since = None;
             return;
         }
-        let since = *self.nearer_since.get_or_insert(picture.t);
-        if self.attackers.is_none() || picture.t - since >= TAKEN_S {
+        let since = *self.nearer_since.get_or_insert(input.t);
+        if self.attackers.is_none() || input.t - since >= TAKEN_S {
             (self.attackers, self.nearer_since) = (Some(team), None);
         }
     }
@@ -121,8 +121,8 @@ impl Tactics {
 
 /// The field as that team's strategy sees it, with every visible robot; `None` until it is known which team
 /// defends which goal.
-fn view(picture: &Picture, us: Colour) -> Option<View> {
-    let game = &picture.game;
+fn view(input: &OverlayInput, us: Colour) -> Option<View> {
+    let game = &input.game;
     let sheet = ViewGame {
         phase: game.phase.seen_by(us),
         next: game.next.map(|phase| phase.seen_by(us)),
@@ -132,7 +132,7 @@ fn view(picture: &Picture, us: Colour) -> Option<View> {
         their_keeper: game.team(us.other()).keeper.unwrap_or(RobotId::ZERO),
         stakes: Stakes::EVEN,
     };
-    Some(View::of(&picture.world, us, &sheet, picture.field, all_robots()))
+    Some(View::of(&input.world, us, &sheet, input.field, all_robots()))
 }
 
 fn all_robots() -> RobotSet {
@@ -165,7 +165,7 @@ fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
         .collect();
     let (half_x, half_y) = (view.field.length * 0.5, view.field.width * 0.5);
     let (columns, rows) =
-        ((view.field.length / CELL).round() as u32, (view.field.width / CELL).round() as u32);
+        ((view.field.length / CELL_M).round() as u32, (view.field.width / CELL_M).round() as u32);
     let mut rated = Vec::with_capacity((columns * rows) as usize);
     for row in 0..rows {
         for column in 0..columns {
@@ -182,11 +182,11 @@ fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
     let map = |note: &str, of: fn(&Rated) -> f32| {
         let best = rated.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
         let Some((best, most)) =
-            best.map(|best| (best.place, of(best))).filter(|(_, most)| *most > WORTHLESS)
+            best.map(|best| (best.place, of(best))).filter(|(_, most)| *most > WORTH_MIN)
         else {
             return Vec::new();
         };
-        let cell = |value: f32| if value < most * FAINT { 0 } else { (value / most * 255.0) as u8 };
+        let cell = |value: f32| if value < most * DRAWN_SHARE_MIN { 0 } else { (value / most * 255.0) as u8 };
         let heat = Heat {
             low: [milli(-half_x), milli(-half_y)],
             high: [milli(half_x), milli(half_y)],
@@ -250,7 +250,7 @@ mod tests {
     use rules::League;
 
     /// Blue defends −x and has the ball; two of three of each team are field players.
-    fn picture(t: f64, ball: (f32, f32), phase: Phase<Colour>) -> Picture {
+    fn input(t: f64, ball: (f32, f32), phase: Phase<Colour>) -> OverlayInput {
         let mut world = World::default();
         world.ball = Some(Ball::at_rest(Point::new(ball.0, ball.1), Instant(0)));
         let teams = [
@@ -272,7 +272,7 @@ mod tests {
         let mut game = Game::default();
         (game.phase, game.blue_goal) = (phase, Some(GoalEnd::Negative));
         let league = League::DivisionB;
-        Picture { t, world, game, field: league.field(), league, us: None, aims: Vec::new() }
+        OverlayInput { t, world, game, field: league.field(), league, us: None, aims: Vec::new() }
     }
 
     fn shapes(layers: &[[Layer; 2]; 2], name: &str) -> Vec<Shape> {
@@ -281,15 +281,15 @@ mod tests {
 
     #[test]
     fn a_cell_of_the_map_holds_what_strategy_rates_its_middle_with() {
-        let picture = picture(0.0, (0.2, 0.0), Phase::Run);
-        let layers = Tactics::default().layers(&picture);
+        let input = input(0.0, (0.2, 0.0), Phase::Run);
+        let layers = Tactics::default().layers(&input);
         let Shape::Heat(heat) = &shapes(&layers, "pass-receive")[0] else { panic!("no map") };
         assert_eq!((heat.columns, heat.cells.len()), (30, 600));
-        let view = view(&picture, Colour::Blue).unwrap();
+        let view = view(&input, Colour::Blue).unwrap();
         let kicks = Kicks::new(
             PassConstants::of(League::DivisionB),
-            picture.world.models.ground,
-            picture.world.models.chip,
+            input.world.models.ground,
+            input.world.models.chip,
         );
         let scene = PassScene::of(&view, &kicks, Point::new(0.2, 0.0), Some(view.ours[1].id), &view.ours[2]);
         for (column, row) in [(20, 14), (22, 12), (5, 5), (25, 10)] {
@@ -297,7 +297,7 @@ mod tests {
             let cell = f32::from(heat.cells[row * 30 + column]) / 255.0 * heat.most;
             let rated = scene.rate(middle).receive();
             assert!(
-                (cell - rated).abs() < 0.005 || (cell == 0.0 && rated < FAINT * heat.most),
+                (cell - rated).abs() < 0.005 || (cell == 0.0 && rated < DRAWN_SHARE_MIN * heat.most),
                 "{column} {row}: {cell}, {rated}"
             );
         }
@@ -305,7 +305,7 @@ mod tests {
 
     #[test]
     fn maps_are_there_in_a_halt_too_but_no_one_is_judged_by_where_he_stands() {
-        let layers = Tactics::default().layers(&picture(0.0, (0.2, 0.0), Phase::Halt));
+        let layers = Tactics::default().layers(&input(0.0, (0.2, 0.0), Phase::Halt));
         assert!(!shapes(&layers, "pass-receive").is_empty());
         assert!(shapes(&layers, "threats").is_empty() && shapes(&layers, "believed").is_empty());
     }
@@ -313,10 +313,10 @@ mod tests {
     #[test]
     fn who_is_near_the_ball_for_a_moment_does_not_attack_yet() {
         let mut tactics = Tactics::default();
-        tactics.layers(&picture(0.0, (0.2, 0.0), Phase::Run));
+        tactics.layers(&input(0.0, (0.2, 0.0), Phase::Run));
         // Yellow 2 stands there.
         for (t, team) in [(0.1, Colour::Blue), (0.4, Colour::Blue), (0.6, Colour::Yellow)] {
-            tactics.layers(&picture(t, (1.0, -1.4), Phase::Run));
+            tactics.layers(&input(t, (1.0, -1.4), Phase::Run));
             assert_eq!(tactics.attackers, Some(team), "{t}");
         }
     }

@@ -2,8 +2,9 @@
 //! itself.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
-use arena::cases::Chosen;
+use arena::cases::{Chosen, LibraryHandle};
 use arena::game::{Game, GameConfig, Watcher, Watchers};
 use casebase::RetrievalSettings;
 use hil_sim::NativeBackend;
@@ -11,8 +12,7 @@ use host::strategy::Tactics;
 use page::{MatchEvent, MatchEventKind, PageTeam, Scene, Shape};
 use rules::{Colour, League};
 
-use super::{Composer, Moment, library_handle_of};
-use crate::cases::explained;
+use super::{Composer, Moment, explained};
 
 struct Feed(Composer);
 
@@ -77,13 +77,13 @@ impl Played {
 
 /// A match of this duration, s.
 fn played(seconds: u32, tactics: Tactics) -> Played {
-    let library_handle = library_handle_of(League::DivisionB, None).unwrap();
+    let library_handle = Some(LibraryHandle::named("division-b").unwrap());
     let base = library_handle.as_ref().unwrap().lasting_base();
     let mut backend = NativeBackend::new(base);
     let mut config = GameConfig::new(League::DivisionB, 1, 600.0);
     config.teams.iter_mut().for_each(|team| team.tactics = tactics);
     let mut game = Game::new(&config, &mut backend).unwrap();
-    let mut feed = Feed(Composer::new(library_handle.as_ref()));
+    let mut feed = Feed(Composer::new(library_handle.as_ref(), Arc::default()));
     let mut out = Played::default();
     let ticks = seconds * 100;
     for tick in 0..ticks {
@@ -151,7 +151,7 @@ fn a_match_fills_scenes_that_hold_against_the_truth() {
 fn a_retrieval_that_is_reported_can_be_explained_and_mostly_comes_to_the_same_case() {
     // Who plays by the rated list decides on cases more rarely.
     let match_events = played(90, Tactics::ROUND_1).match_events;
-    let library_handle = library_handle_of(League::DivisionB, None).unwrap().unwrap();
+    let library_handle = LibraryHandle::named("division-b").unwrap();
     let chosen = Chosen { settings: RetrievalSettings::default(), changed: Vec::new() };
     let (mut reported, mut same) = (0, 0);
     for match_event in match_events.iter().filter(|match_event| match_event.kind == MatchEventKind::Case) {

@@ -46,7 +46,7 @@ impl<const N: usize> Window<N> {
     }
 }
 
-/// Which end of a value is bad.
+/// The bad end of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Worst {
     Largest,

@@ -15,4 +15,4 @@ mod file;
 mod text;
 
 pub use file::{open, read, read_from, read_text};
-pub use text::{Printable, excerpt, printable};
+pub use text::{Printable, excerpt, printable, printable_path};

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{self, Write};
+use std::path::Path;
 
 /// The text with every character escaped that a terminal would execute: `\n`, `\r`, `\t`, and the others as
 /// `\u001b`. So one value stays within its line, and cannot colour, move or hide the text around it.
@@ -115,6 +116,11 @@ impl<W: Write> Write for Printable<W> {
     fn flush(&mut self) -> io::Result<()> {
         self.into.flush()
     }
+}
+
+/// A file's name as it can stand in a line.
+pub fn printable_path(path: &Path) -> String {
+    printable(&path.to_string_lossy()).into_owned()
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! `game`: phases of the game, common to robots, host, referee and simulator (rules 2026, chapter on referee
 //! commands).
 
+use core::fmt;
+
 use serde::{Deserialize, Serialize};
 
 /// A team by its colour; not to be confused with the goals that case files call "yellow" and "cyan".
@@ -80,6 +82,25 @@ impl Phase<Colour> {
     /// The same phase from the side of the team of that colour.
     pub fn seen_by(self, us: Colour) -> Phase<Side> {
         self.map(|colour| if colour == us { Side::Ours } else { Side::Theirs })
+    }
+}
+
+impl fmt::Display for Phase<Colour> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (name, team) = match self {
+            Self::Halt => ("halt", None),
+            Self::Stop => ("stop", None),
+            Self::Run => ("run", None),
+            Self::Timeout(team) => ("timeout", Some(team)),
+            Self::BallPlacement(team) => ("ball placement", Some(team)),
+            Self::PrepareKickoff(team) => ("prepare kickoff", Some(team)),
+            Self::Kickoff(team) => ("kickoff", Some(team)),
+            Self::PreparePenalty(team) => ("prepare penalty", Some(team)),
+            Self::Penalty(team) => ("penalty", Some(team)),
+            Self::FreeKick(team) => ("free kick", Some(team)),
+        };
+        f.write_str(name)?;
+        team.map_or(Ok(()), |team| write!(f, ", {}", team.label()))
     }
 }
 

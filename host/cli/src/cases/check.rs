@@ -14,9 +14,9 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::args::DirectoryArgs;
-use crate::failure::SurveyError;
 use crate::output;
 
+use super::failure::SurveyError;
 use super::survey;
 
 /// Arguments of `cases check`.
@@ -54,10 +54,10 @@ struct Row<'a> {
     hint: &'a str,
 }
 
-const ALL: &str = "all";
+const ALL_CODES: &str = "all";
 
 fn known_code(text: &str) -> Result<String, String> {
-    if text == ALL || case_tools::entry(text).is_some() {
+    if text == ALL_CODES || case_tools::entry(text).is_some() {
         return Ok(text.to_owned());
     }
     let codes: Vec<_> = CODES.iter().map(|entry| entry.code).collect();
@@ -65,7 +65,7 @@ fn known_code(text: &str) -> Result<String, String> {
 }
 
 fn explain(code: &str, output: &mut impl Write) -> io::Result<()> {
-    for entry in CODES.iter().filter(|entry| code == ALL || entry.code == code) {
+    for entry in CODES.iter().filter(|entry| code == ALL_CODES || entry.code == code) {
         writeln!(output, "{}[{}]: {}", entry.severity, entry.code, entry.meaning)?;
     }
     output.flush()
@@ -96,13 +96,13 @@ pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
 
 /// Findings that only drawn problems reveal; the same for any number of threads.
 fn doubts_of_draw(library: &Library, args: &CheckArgs) -> Result<Vec<Finding>, Failure> {
-    let fail = |error| Failure::Survey(SurveyError::Setting(error));
+    let fail = |error| SurveyError::Setting(error);
     let (survey, sampler) = (library.survey().map_err(fail)?, library.sampler(args.seed));
     let counters = survey::counters(&survey, args.problems, |number| Some(sampler.problem(number)));
     Ok(never_retrieved(library, &counters))
 }
 
-/// What the check of one library found.
+/// Findings of the check of one library.
 struct Report {
     league: String,
     /// Case files and stored cases, unless the library was refused.

@@ -12,9 +12,10 @@ use casebase::PointMm;
 use clap::{Args, ValueEnum};
 use drawing::Theme;
 use drawing::cases::{HeatMap, Scale, heat_maps};
+use feed::recording::problem_line;
 use serde_json::{Value, json};
 
-use super::survey::{SurveyArgs, Trial, class, percent, problem_line, region};
+use super::survey::{SurveyArgs, Trial, class, percent, region};
 use crate::Failure;
 use crate::output;
 use crate::picture::{self, SnapshotError};

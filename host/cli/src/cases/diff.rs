@@ -8,9 +8,9 @@ use casebase::{CaseVerdict, Criterion, Match, RetrievalSettings, Symmetry, rank_
 use protocol::CaseId;
 use serde::Serialize;
 
-use crate::Failure;
+use super::failure::NoCase;
 
-/// Which of two cases ranks first, and by what.
+/// The case of two that ranks first, and the criterion that decides.
 #[derive(Debug, Serialize)]
 pub(super) struct Difference<'a> {
     /// The one that ranks first; the only candidate, if just one is.
@@ -32,7 +32,7 @@ struct Side<'a> {
 }
 
 /// A stored case by its id, its name (as authored) or `name/symmetry`.
-pub(super) fn find(library_handle: &LibraryHandle, stored: usize, asked: &str) -> Result<CaseId, Failure> {
+pub(super) fn find(library_handle: &LibraryHandle, stored: usize, asked: &str) -> Result<CaseId, NoCase> {
     if let Some(id) = asked.parse::<u16>().ok().filter(|id| usize::from(*id) < stored) {
         return Ok(CaseId(id));
     }

@@ -7,12 +7,14 @@ use std::process::ExitCode;
 
 use clap::Args;
 use study::evaluation::EvaluationError;
+use feed::recording::{OpenLibrary, collect};
 use study::learning::{Change, RecordedDraft, draft};
 
 use crate::Failure;
 use crate::args::LibraryArgs;
+use crate::library;
 use crate::output::{note, print_text, printable_path};
-use crate::replay::{OpenLibrary, collect};
+use crate::progress::Progress;
 
 /// Arguments of `cases draft`.
 #[derive(Debug, Args)]
@@ -35,8 +37,8 @@ pub(crate) struct DraftArgs {
 }
 
 pub(super) fn run(args: &DraftArgs) -> Result<ExitCode, Failure> {
-    let known = OpenLibrary::open(&args.library)?;
-    let collected = collect(&args.from, &known, args.key_file.as_deref(), false)?;
+    let known = OpenLibrary::of(library::open(&args.library)?)?;
+    let collected = collect(&args.from, &known, args.key_file.as_deref(), false, &Progress::open())?;
     let rules = &known.variant.files.rules;
     let (mut written, mut blocked) = (BTreeSet::new(), 0);
     let mut refused = BTreeMap::<String, u32>::new();

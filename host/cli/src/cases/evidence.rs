@@ -7,11 +7,13 @@ use std::process::ExitCode;
 
 use clap::Args;
 use study::evaluation::EvaluationError;
+use feed::recording::{OpenLibrary, collect};
 
 use crate::Failure;
 use crate::args::LibraryArgs;
+use crate::library;
 use crate::output::{print_text, printable_path};
-use crate::replay::{OpenLibrary, collect};
+use crate::progress::Progress;
 
 /// Arguments of `cases evidence`.
 #[derive(Debug, Args)]
@@ -31,8 +33,8 @@ pub(crate) struct EvidenceArgs {
 }
 
 pub(super) fn run(args: &EvidenceArgs) -> Result<ExitCode, Failure> {
-    let known = OpenLibrary::open(&args.library)?;
-    let collected = collect(&args.files, &known, args.key_file.as_deref(), true)?;
+    let known = OpenLibrary::of(library::open(&args.library)?)?;
+    let collected = collect(&args.files, &known, args.key_file.as_deref(), true, &Progress::open())?;
     std::fs::write(&args.out, collected.to_jsonl())
         .map_err(|error| EvaluationError::File { file: args.out.clone(), error })?;
     let of_cases = || collected.evidence.0.iter().filter(|(key, _)| !key.case.is_empty());

@@ -6,9 +6,7 @@
 use std::io::{Write, stdin};
 use std::process::ExitCode;
 
-use arena::cases::{
-    Answer, Chosen, Explanation, LibraryHandle, NEAREST, candidate, explained_by, reason, write_line,
-};
+use arena::cases::{Answer, Chosen, Explanation, LibraryHandle, NEAREST, candidate, reason, write_line};
 use casebase::{CaseBase, Match, Problem, rank_order};
 use clap::Args;
 use protocol::CaseId;
@@ -86,15 +84,6 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
         Err(error) => writeln!(output, "{error}\n"),
     })?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// The explanation of a problem in the form of `--json`; or the error in the problem.
-pub(crate) fn explained(
-    library_handle: &LibraryHandle,
-    chosen: &Chosen,
-    line: &str,
-) -> Result<String, String> {
-    explained_by(&library_handle.base(), &|id| library_handle.name(id), chosen, line)
 }
 
 /// Two cases on one problem.

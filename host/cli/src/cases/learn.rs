@@ -6,19 +6,20 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clap::Args;
 use study::evaluation::{EvaluationError, Shard};
+use clap::Args;
+use feed::recording::{OpenLibrary, collect};
+use feed::refusals;
 use study::learning::{
     JournalPlayer, Kind, LearnError, LearnSettings, Learned, Worlds, learn, learn_matches,
 };
 
 use crate::Failure;
-use crate::args::{LibraryArgs, VERSION};
+use crate::args::{LibraryArgs, VERSION, parsers};
+use crate::library;
 use crate::output::print_text;
 use crate::progress::Progress;
-use crate::replay::{OpenLibrary, collect};
 use crate::stop::stopped_by_hand;
-use crate::workbench::refusals;
 
 /// Arguments of `cases learn`.
 #[derive(Debug, Args)]
@@ -55,7 +56,7 @@ pub(crate) struct LearnArgs {
     tries: u32,
     /// Every n-th unit of trials from the i-th on; shards run at the same time in one directory, and play
     /// what an absent one lacks. Without it, what all shards have played is read and the rest is played.
-    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = shard)]
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = parsers::shard)]
     shard: Shard,
     /// Threads; the number of cores by default.
     #[arg(short, long, value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -72,14 +73,14 @@ pub(crate) struct LearnArgs {
 }
 
 pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
-    let known = OpenLibrary::open(&args.library)?;
+    let known = OpenLibrary::of(library::open(&args.library)?)?;
     let matches = known.handle.simulated_league()?.limits().is_some();
     if !matches {
         known.handle.check_field_of_trials()?;
     }
     let budget = args.budget.unwrap_or(if matches { SCENES } else { TRIALS });
     let files = known.variant.files.clone();
-    let earlier = collect(&args.from, &known, None, true)?;
+    let earlier = collect(&args.from, &known, None, true, &Progress::open())?;
     let kinds: BTreeSet<Kind> =
         if args.only.is_empty() { Kind::ALL.into() } else { args.only.iter().copied().collect() };
     let refused = known.handle.directory().map_or_else(|| Ok(BTreeSet::new()), refusals);
@@ -118,7 +119,7 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
         learn(files, earlier, &settings, &mut player.map_err(LearnError::Play)?)
     });
     drop(bar);
-    let learned = learned.map_err(Failure::Learning)?;
+    let learned = learned?;
     // Every shard has learned the same; the first one writes it.
     if args.shard.has(0) {
         write(&learned, &args.out)?;
@@ -184,8 +185,4 @@ fn worlds(label: &str) -> Result<Worlds, String> {
 fn rate(label: &str) -> Result<f64, String> {
     let rate = label.parse().ok().filter(|rate| (0.0001..=0.5).contains(rate));
     rate.ok_or_else(|| "take a share from 0.0001 to 0.5".to_owned())
-}
-
-fn shard(label: &str) -> Result<Shard, String> {
-    Shard::from_label(label).ok_or_else(|| "take i/n with i from 1 to n, such as 2/3".to_owned())
 }

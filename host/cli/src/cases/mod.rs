@@ -6,10 +6,11 @@ mod diff;
 mod draft;
 mod evidence;
 mod explain;
+mod failure;
 mod learn;
 mod lines;
 mod list;
-pub(crate) mod new;
+mod new;
 mod play;
 mod playable;
 mod render;
@@ -18,9 +19,6 @@ mod schema;
 mod show;
 mod stats;
 mod survey;
-
-pub(crate) use explain::explained;
-pub(crate) use survey::problem_line;
 
 use std::process::ExitCode;
 
@@ -85,7 +83,7 @@ pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
     }
 }
 
-/// What a line of stdin looks like.
+/// Format of a line of stdin.
 const PROBLEM_HELP: &str = r#"A problem is one line of JSON; mm, field frame (origin at the centre, +x along the length):
 {"ball":[-600,10],"defending":"yellow","teammates":{"1":[-700,0],"3":[200,800]},"opponents":[[-150,40]]}
 "defending" is "yellow" (the goal at -x: attacks towards +x) or "cyan"; teammates go by robot id, 0 to 15."#;

@@ -2,16 +2,17 @@
 //! passes `cases check` and is retrieved from its problem; the parts of the problem that it leaves out are
 //! reported on stderr.
 
-use std::fmt;
 use std::fs::OpenOptions;
 use std::io::{self, Read, Write, stdin};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use arena::cases::LibraryError;
 use arena::cases::problem::{self, Malformed};
 use case_tools::{CASE_FILE_LEN_MAX, Files, SkeletonError, SourceFile, skeleton};
 use casebase::Problem;
 use clap::Args;
+use thiserror::Error;
 
 use super::lines::LINE_MAX;
 use crate::Failure;
@@ -38,7 +39,7 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
     let rules = rules(&args.library)?;
     let problem = read(&args.from)?;
     let draft = skeleton(&rules, &problem).map_err(|error| match error {
-        SkeletonError::NoTeammate => Failure::Draft(DraftError::NoTeammate),
+        SkeletonError::NoTeammate => Failure::from(DraftError::NoTeammate),
         SkeletonError::League(findings) => {
             let directory = rules.path.parent().map(Path::to_owned).unwrap_or_default();
             Failure::faulty_library(directory, findings)
@@ -67,16 +68,16 @@ fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
     if let Some(directory) = &args.directory.library {
         let path = directory.join("league.toml");
         let text = foreign::read_text(&path, CASE_FILE_LEN_MAX)
-            .map_err(|error| Failure::Draft(DraftError::Rules { file: path.clone(), error }))?;
+            .map_err(|error| DraftError::Rules { file: path.clone(), error })?;
         return Ok(SourceFile { path, name: "league".to_owned(), text });
     }
     let league = case_library::league(&args.league);
-    let league = league.ok_or_else(|| Failure::unknown_league(&args.league))?;
+    let league = league.ok_or_else(|| LibraryError::UnknownLeague(args.league.clone()))?;
     Ok(Files::from_texts(league.name, league.rules, &[]).rules)
 }
 
 /// Reads the one problem of a file.
-fn read(from: &Path) -> Result<Problem, Failure> {
+fn read(from: &Path) -> Result<Problem, DraftError> {
     let most = LINE_MAX as u64;
     let (name, read) = if from == Path::new("-") {
         let mut bytes = Vec::new();
@@ -85,7 +86,7 @@ fn read(from: &Path) -> Result<Problem, Failure> {
     } else {
         (printable_path(from), foreign::read(from, most))
     };
-    let fail = |error| Failure::Draft(DraftError::Problem { from: name.clone(), error });
+    let fail = |error| DraftError::Problem { from: name.clone(), error };
     let bytes = read.map_err(|error| fail(ProblemError::Read(error)))?;
     if bytes.len() > LINE_MAX {
         return Err(fail(ProblemError::TooLong));
@@ -106,7 +107,7 @@ fn read(from: &Path) -> Result<Problem, Failure> {
     })
 }
 
-fn write(file: &Path, force: bool, text: &str) -> Result<(), Failure> {
+fn write(file: &Path, force: bool, text: &str) -> Result<(), DraftError> {
     let mut options = OpenOptions::new();
     options.write(true);
     let opened = if force {
@@ -116,15 +117,20 @@ fn write(file: &Path, force: bool, text: &str) -> Result<(), Failure> {
     };
     opened
         .and_then(|mut out| out.write_all(text.as_bytes()))
-        .map_err(|error| Failure::Draft(DraftError::Write { file: file.to_owned(), error }))
+        .map_err(|error| DraftError::Write { file: file.to_owned(), error })
 }
 
 /// Why no case is drafted.
-#[derive(Debug)]
-pub(crate) enum DraftError {
-    /// Nobody plays the ball.
+#[derive(Debug, Error)]
+enum DraftError {
+    /// No robot to play the ball.
+    #[error("the problem has no teammate, and a case needs one; add who plays the ball to \"teammates\"")]
     NoTeammate,
     /// The league's rules cannot be read.
+    #[error(
+        "cannot read {}: {error}; --library takes one league's directory, the one that holds league.toml",
+        printable_path(file)
+    )]
     Rules {
         /// `league.toml` of the named directory.
         file: PathBuf,
@@ -132,6 +138,7 @@ pub(crate) enum DraftError {
         error: io::Error,
     },
     /// The problem cannot be had.
+    #[error("{from}: {error}")]
     Problem {
         /// The file's name, or stdin.
         from: String,
@@ -139,58 +146,37 @@ pub(crate) enum DraftError {
         error: ProblemError,
     },
     /// The draft cannot be written.
+    #[error("cannot write {}: {error}; {}", printable_path(file), remedy(error))]
     Write {
-        /// Where to.
+        /// Destination.
         file: PathBuf,
         /// Why.
         error: io::Error,
     },
 }
 
-/// What is wrong with the problem of a draft.
-#[derive(Debug)]
-pub(crate) enum ProblemError {
+/// Remedy for a file that could not be written.
+fn remedy(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::AlreadyExists => "--force writes over it",
+        io::ErrorKind::NotFound => "create its directory first",
+        _ => "choose another --out",
+    }
+}
+
+/// A fault of the problem of a draft.
+#[derive(Debug, Error)]
+enum ProblemError {
+    #[error("{0}")]
     Read(io::Error),
+    #[error("more than {LINE_MAX} bytes; give one problem")]
     TooLong,
+    #[error("not UTF-8; give one problem as JSON")]
     NotText,
+    #[error("holds no problem; give one as JSON")]
     Empty,
+    #[error("holds more than one problem; keep the line that the case is for")]
     Several,
+    #[error("{0}")]
     Malformed(Malformed),
-}
-
-impl fmt::Display for DraftError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoTeammate => f.write_str(
-                "the problem has no teammate, and a case needs one; add who plays the ball to \"teammates\"",
-            ),
-            Self::Rules { file, error } => write!(
-                f,
-                "cannot read {}: {error}; --library takes one league's directory, the one that holds league.toml",
-                printable_path(file)
-            ),
-            Self::Problem { from, error } => write!(f, "{from}: {error}"),
-            Self::Write { file, error } => {
-                let hint = match error.kind() {
-                    io::ErrorKind::AlreadyExists => "--force writes over it",
-                    io::ErrorKind::NotFound => "create its directory first",
-                    _ => "choose another --out",
-                };
-                write!(f, "cannot write {}: {error}; {hint}", printable_path(file))
-            }
-        }
-    }
-}
-
-impl fmt::Display for ProblemError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Read(error) => write!(f, "{error}"),
-            Self::TooLong => write!(f, "more than {LINE_MAX} bytes; give one problem"),
-            Self::NotText => f.write_str("not UTF-8; give one problem as JSON"),
-            Self::Empty => f.write_str("holds no problem; give one as JSON"),
-            Self::Several => f.write_str("holds more than one problem; keep the line that the case is for"),
-            Self::Malformed(error) => write!(f, "{error}"),
-        }
-    }
 }

@@ -15,6 +15,7 @@ use casebase::Case;
 use clap::Args;
 use rules::League;
 
+use super::failure::NoCase;
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::output::{self, print_text};
@@ -97,10 +98,11 @@ fn chosen<'a>(
     };
     for asked in &args.names {
         if !names.iter().any(|name| means(asked, name)) {
-            return Err(Failure::UnknownName {
+            return Err(NoCase::UnknownName {
                 asked: asked.clone(),
                 league: library_handle.league().to_owned(),
-            });
+            }
+            .into());
         }
     }
     let wanted = |name: &str| args.names.is_empty() || args.names.iter().any(|asked| means(asked, name));
@@ -161,8 +163,8 @@ fn write_story(
 
 fn failure(error: AttemptError) -> Failure {
     match error {
-        AttemptError::FourLegged(error) => Failure::Trial(error),
-        AttemptError::SmallSize(error) => Failure::Game(error),
+        AttemptError::FourLegged(error) => error.into(),
+        AttemptError::SmallSize(error) => error.into(),
     }
 }
 

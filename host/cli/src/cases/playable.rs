@@ -18,7 +18,7 @@ pub(super) struct Playable {
 }
 
 /// Places of a robot around the ball that are tried.
-const AROUND: usize = 64;
+const PLACES_AROUND_BALL: usize = 64;
 
 impl Playable {
     /// On this field, by the rules of the league of that name.
@@ -37,7 +37,7 @@ impl Playable {
         Self { field, spec }
     }
 
-    /// Whether a field player of the team that defends `own` may play a ball there.
+    /// True if a field player of the team that defends `own` may play a ball there.
     pub(super) fn allows(&self, ball: PointMm, own: GoalEnd) -> bool {
         let Some(field) = &self.spec else { return self.field.contains(ball) };
         let at: Point<Field> = Point::new(ball.x as f32 * 1e-3, ball.y as f32 * 1e-3);
@@ -51,8 +51,8 @@ impl Playable {
             ball_in_play: true,
         };
         let reach = ROBOT_RADIUS + BALL_RADIUS;
-        let mut around = (0..AROUND).map(|i| {
-            let (sin, cos) = (std::f32::consts::TAU * i as f32 / AROUND as f32).sin_cos();
+        let mut around = (0..PLACES_AROUND_BALL).map(|i| {
+            let (sin, cos) = (std::f32::consts::TAU * i as f32 / PLACES_AROUND_BALL as f32).sin_cos();
             Point::new(at.x() + reach * cos, at.y() + reach * sin)
         });
         let on_field = |robot: Point<Field>| robot.x().abs() <= 0.5 * field.length;

@@ -10,13 +10,13 @@ use clap::{Args, ValueEnum};
 use drawing::Theme;
 use drawing::cases::{CasePicture, Overlay, case_picture, sheet};
 
+use super::failure::{NoCase, ProblemError};
 use super::lines::LINE_MAX;
 use super::show::{find, unknown};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
-use crate::failure::ProblemError;
 use crate::output::print_text;
-use crate::picture::{self, SnapshotError};
+use crate::picture::{self, SnapshotError, Unwritten};
 
 /// Arguments of `cases render`.
 #[derive(Debug, Args)]
@@ -71,7 +71,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let svg = one(args, &library_handle)?;
     if let Some(file) = &args.out {
         picture::named(&file.to_string_lossy(), &KINDS)
-            .map_err(|error| Failure::Picture { file: file.clone(), error })?;
+            .map_err(|error| Unwritten { file: file.clone(), error })?;
         picture::write(file, &svg)?;
     } else {
         print_text(&svg)?;
@@ -92,14 +92,14 @@ fn one(args: &RenderArgs, library_handle: &LibraryHandle) -> Result<String, Fail
         }
         (None, None) => None,
     };
-    let case = case.ok_or(Failure::NoCaseFits)?;
+    let case = case.ok_or(NoCase::NoneFits)?;
     let mut verdicts = Vec::new();
     if let Some(problem) = &problem {
         casebase::explain(&base, problem, settings, |id, verdict| verdicts.push((id, verdict)));
     }
     let verdict = verdicts.iter().find(|(id, _)| *id == case.id()).map(|(_, verdict)| verdict);
     if problem.is_some() && verdict.is_none() {
-        return Err(Failure::OtherGoal(library_handle.name(case.id()).to_owned()));
+        return Err(NoCase::OtherGoal(library_handle.name(case.id()).to_owned()).into());
     }
     let mut ranking: Vec<_> = verdicts.iter().filter_map(|(_, verdict)| candidate(verdict)).collect();
     ranking.sort_by(|a, b| rank_order(a, b, settings));
@@ -134,10 +134,8 @@ fn every(args: &RenderArgs, library_handle: &LibraryHandle) -> Result<ExitCode, 
         for picture in &pictures {
             let file = directory.join(format!("{}.svg", picture.name));
             if let Some(directory) = file.parent() {
-                std::fs::create_dir_all(directory).map_err(|error| Failure::Picture {
-                    file: file.clone(),
-                    error: SnapshotError::Write(error),
-                })?;
+                std::fs::create_dir_all(directory)
+                    .map_err(|error| Unwritten { file: file.clone(), error: SnapshotError::Write(error) })?;
             }
             picture::write(&file, &case_picture(picture))?;
         }
@@ -167,12 +165,12 @@ fn read(argument: &str) -> Result<Problem, Failure> {
     } else {
         let file = Path::new(argument);
         foreign::read_text(file, LINE_MAX as u64)
-            .map_err(|error| Failure::Problem(ProblemError::Unreadable(file.to_owned(), error)))?
+            .map_err(|error| ProblemError::Unreadable(file.to_owned(), error))?
     };
     if text.len() > LINE_MAX {
-        return Err(Failure::Problem(ProblemError::TooLong(LINE_MAX)));
+        return Err(ProblemError::TooLong(LINE_MAX).into());
     }
-    problem::parse(text.trim()).map_err(|error| Failure::Problem(ProblemError::Malformed(error)))
+    Ok(problem::parse(text.trim()).map_err(ProblemError::Malformed)?)
 }
 
 fn picture_file(text: &str) -> Result<PathBuf, SnapshotError> {

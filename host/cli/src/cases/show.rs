@@ -11,6 +11,7 @@ use casebase::{
 use clap::Args;
 use protocol::CaseId;
 
+use super::failure::NoCase;
 use crate::Failure;
 use crate::args::LibraryArgs;
 use crate::output;
@@ -41,9 +42,9 @@ pub(super) fn find<'a>(library_handle: &'a LibraryHandle, asked: &str) -> Option
     }
 }
 
-pub(super) fn unknown(library_handle: &LibraryHandle, asked: &str) -> Failure {
+pub(super) fn unknown(library_handle: &LibraryHandle, asked: &str) -> NoCase {
     let base = library_handle.base();
-    Failure::UnknownCase {
+    NoCase::Unknown {
         asked: asked.to_owned(),
         league: library_handle.league().to_owned(),
         stored: base.len(),
@@ -61,11 +62,11 @@ fn near(names: &[String], asked: &str) -> Option<String> {
             .fold(0.0, f64::max)
     };
     let best = names.iter().map(|name| (alike(name), name)).max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 >= ALIKE).then(|| best.1.clone())
+    (best.0 >= ALIKE_SHARE_MIN).then(|| best.1.clone())
 }
 
 /// Least share of letters in common for two names to be taken for a typing error.
-const ALIKE: f64 = 0.6;
+const ALIKE_SHARE_MIN: f64 = 0.6;
 
 fn write_case(output: &mut impl Write, library_handle: &LibraryHandle, case: &Case<'_>) -> io::Result<()> {
     let base = library_handle.base();
@@ -173,7 +174,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_slip_of_the_pen_is_reported_the_name_meant() {
+    fn misspelled_case_gets_a_suggestion() {
         let names = ["center/pass-around", "front/shot"].map(str::to_owned);
         assert_eq!(near(&names, "center/pas-around").as_deref(), Some("center/pass-around"));
         assert_eq!(near(&names, "shto").as_deref(), Some("front/shot"));

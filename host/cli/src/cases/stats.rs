@@ -250,16 +250,16 @@ fn hints(case: &CaseCounters, counters: &Counters) -> Vec<String> {
             "never a candidate in {} problems: enlarge its scope, or take it out",
             counters.problems
         ));
-    } else if wins * SHADOWED < candidate {
+    } else if wins * SHADOWED_ONE_WIN_IN < candidate {
         hints.push(format!("shadowed: {wins} wins in {candidate} problems where it is a candidate"));
     }
-    if case.rings[3] >= EVIDENCE && case.rings_won[3] == 0 && wins > 0 {
+    if case.rings[3] >= HINT_PROBLEMS_MIN && case.rings_won[3] == 0 && wins > 0 {
         hints.push(format!(
             "shrink its ball scope? a candidate {} times in the ring L, never a winner there",
             case.rings[3]
         ));
     }
-    if case.would_fill >= EVIDENCE && case.would_fill * WORTH_ENLARGING >= counters.none {
+    if case.would_fill >= HINT_PROBLEMS_MIN && case.would_fill * WORTH_ENLARGING >= counters.none {
         let share = percent(case.would_fill, counters.none);
         hints.push(format!(
             "enlarge its ball scope? a fifth more fills {} of the problems without a case ({share:.1} %)",
@@ -285,9 +285,9 @@ fn object(description: &[&str], counts: &[u64]) -> Value {
 
 /// A case with fewer wins than one in this number of candidacies is shadowed: another case wins nearly all of
 /// its problems.
-const SHADOWED: u64 = 50;
+const SHADOWED_ONE_WIN_IN: u64 = 50;
 /// Least number of problems for a hint: fewer may be chance.
-const EVIDENCE: u64 = 20;
+const HINT_PROBLEMS_MIN: u64 = 20;
 /// A larger scope is worth a hint where it fills at least one in this number of the problems without a case.
 const WORTH_ENLARGING: u64 = 25;
 /// Jaccard's index of coverage sets from which two cases count as near twins.

@@ -12,11 +12,11 @@ use casebase::{GoalEnd, Problem, Symmetry};
 use clap::{Args, value_parser};
 use rayon::prelude::*;
 
+use super::failure::{FromError, LineFault, NoCase, SurveyError};
 use super::lines::for_each_problem;
 use super::playable::Playable;
 use crate::Failure;
-use crate::args::{LibraryArgs, SettingsArgs};
-use crate::failure::{FromError, LineFault, SurveyError};
+use crate::args::{LibraryArgs, SettingsArgs, parsers};
 use crate::progress::Progress;
 
 /// Arguments of both verbs.
@@ -37,7 +37,7 @@ pub(crate) struct SurveyArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["problems", "seed"])]
     from: Option<PathBuf>,
     /// Only problems of the team that defends this goal.
-    #[arg(long, value_name = "GOAL", value_parser = goal)]
+    #[arg(long, value_name = "GOAL", value_parser = parsers::goal)]
     defending: Option<GoalEnd>,
     /// Only the first N robots of each problem are present.
     #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=11))]
@@ -57,7 +57,7 @@ pub(crate) struct Trial<'a> {
     pub(crate) library_handle: LibraryHandle,
     pub(crate) chosen: Chosen,
     source: Source,
-    /// Where the ball of a problem must lie; anywhere by default.
+    /// Places that the ball of a problem may have; anywhere by default.
     places: Option<Playable>,
 }
 
@@ -72,7 +72,7 @@ impl<'a> Trial<'a> {
         let chosen = args.settings.choose()?;
         let library_handle = crate::library::open(&args.library)?;
         if library_handle.base().is_empty() {
-            return Err(Failure::EmptyLibrary(library_handle.league().to_owned()));
+            return Err(NoCase::EmptyLibrary(library_handle.league().to_owned()).into());
         }
         let source = match &args.from {
             Some(file) => Source::Recorded(recorded(file)?),
@@ -94,7 +94,7 @@ impl<'a> Trial<'a> {
         self.places = Some(Playable::new(self.library_handle.league(), self.library_handle.base().field()));
     }
 
-    /// Whether the problems were recorded: played, not drawn.
+    /// True if the problems were recorded: played, not drawn.
     pub(crate) fn is_recorded(&self) -> bool {
         matches!(self.source, Source::Recorded(_))
     }
@@ -123,17 +123,15 @@ impl<'a> Trial<'a> {
     pub(crate) fn count(&self) -> Result<(Counters, Cells), Failure> {
         let base = self.library_handle.base();
         let edge = self.args.cell.unwrap_or_else(|| Cells::suitable_edge_mm(base.field()));
-        let cells = Cells::new(base.field(), edge)
-            .map_err(|error| Failure::Survey(SurveyError::Cell(edge, error)))?;
-        let survey = Survey::new(base, &self.chosen.settings, cells)
-            .map_err(|error| Failure::Survey(SurveyError::Wider(error)))?;
+        let cells = Cells::new(base.field(), edge).map_err(|error| SurveyError::Cell(edge, error))?;
+        let survey = Survey::new(base, &self.chosen.settings, cells).map_err(SurveyError::Wider)?;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.args.jobs.map_or(0, usize::from))
             .build()
             .map_err(Failure::Threads)?;
         let counters = pool.install(|| counters(&survey, self.len(), |number| self.problem(number)));
         if counters.problems == 0 {
-            return Err(Failure::Survey(SurveyError::NothingLeft));
+            return Err(SurveyError::NothingLeft.into());
         }
         Ok((counters, cells))
     }
@@ -147,28 +145,14 @@ pub(crate) fn counters(
 ) -> Counters {
     let progress = Progress::of(len, "problems");
     let block = |number: u64| {
-        let numbers = number * BLOCK..len.min((number + 1) * BLOCK);
+        let numbers = number * BLOCK_PROBLEMS..len.min((number + 1) * BLOCK_PROBLEMS);
         let count = numbers.end - numbers.start;
         let counters = survey.over(numbers.filter_map(|number| Some((number, problem(number)?))));
         progress.add(count);
         counters
     };
-    let blocks = (0..len.div_ceil(BLOCK)).into_par_iter();
+    let blocks = (0..len.div_ceil(BLOCK_PROBLEMS)).into_par_iter();
     blocks.map(block).reduce(|| survey.empty(), Counters::merge)
-}
-
-/// A problem as `cases retrieve` reads it.
-pub(crate) fn problem_line(problem: &Problem) -> String {
-    let robots = problem.teammates.iter().map(|(id, at)| format!("\"{}\":[{},{}]", id.number(), at.x, at.y));
-    let opponents = problem.opponents.iter().map(|at| format!("[{},{}]", at.x, at.y));
-    format!(
-        "{{\"ball\":[{},{}],\"defending\":\"{}\",\"teammates\":{{{}}},\"opponents\":[{}]}}",
-        problem.ball.x,
-        problem.ball.y,
-        problem.defending.label(),
-        robots.collect::<Vec<_>>().join(","),
-        opponents.collect::<Vec<_>>().join(",")
-    )
 }
 
 /// A share in percent, to one decimal place: `12.3`.
@@ -190,7 +174,7 @@ pub(crate) fn class(library_handle: &LibraryHandle, authored: usize) -> (&'stati
 }
 
 fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
-    let fail = |error| Failure::Survey(SurveyError::From(file.to_owned(), error));
+    let fail = |error| SurveyError::From(file.to_owned(), error);
     let input = foreign::open(file).map_err(|error| fail(FromError::Unreadable(error)))?;
     let mut problems = Vec::new();
     let (mut first_fault, mut faults) = (None, 0_u64);
@@ -209,8 +193,8 @@ fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
         Ok(())
     })?;
     match first_fault {
-        Some(first) => Err(fail(FromError::Faulty { first, more: faults - 1 })),
-        None if problems.is_empty() => Err(fail(FromError::Empty)),
+        Some(first) => Err(fail(FromError::Faulty { first, more: faults - 1 }).into()),
+        None if problems.is_empty() => Err(fail(FromError::Empty).into()),
         None => Ok(problems),
     }
 }
@@ -227,11 +211,7 @@ fn sampler(library_handle: &LibraryHandle, seed: u64) -> Result<Sampler, Failure
     }
 }
 
-fn goal(label: &str) -> Result<GoalEnd, String> {
-    GoalEnd::from_label(label).ok_or_else(|| "expected yellow (the goal at -x) or cyan".to_owned())
-}
-
 /// Problems that are read from one file: 2 GB of memory.
 const RECORDED_MAX: usize = 5_000_000;
 /// Problems that are counted in one go: some tens of milliseconds.
-const BLOCK: u64 = 2048;
+const BLOCK_PROBLEMS: u64 = 2048;

@@ -1,21 +1,11 @@
 //! `onetwo control`: the host of a team on the league's network
 //! (docs/architecture.md §3, docs/case-format.md §5).
 //!
-//! The host is a value without sockets ([`host::Host`]); here are a thread for each socket, one channel, and
-//! the loop that feeds it what arrives and sends its output. Nothing that is missing ends the program: it
-//! reports what it waits for, and goes on when that arrives.
+//! [`host::run`] has sockets, threads and the loop; here are the flags, the terminal and the page.
 
-mod alarms;
-mod board;
-mod event_loop;
-mod identity;
-mod inbox;
-mod port_for_teams;
-mod radio_alarms;
+mod failure;
+mod operator;
 mod terminal;
-mod threads;
-mod tuning;
-mod watch;
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -28,19 +18,20 @@ use arena::cases::LibraryHandle;
 use clap::Args;
 use hil_sim::small_size::Parameters;
 use host::config::{BallSettings, Calibration, DriveSettings, RobotLink, TeamConfig, TeamSettings};
+use host::run::{CONFIG_LEN_MAX, OutputFiles, Program, RunSettings, VirtualRobots};
 use protocol::RobotId;
-use rules::Colour;
 use ssl::net::addresses;
 
-pub(crate) use identity::real_epoch;
-
 use crate::Failure;
+use crate::args::page::PageArgs;
+use crate::args::parsers::{RobotIds, kick, robot_ids, seconds};
 use crate::args::{DirectoryArgs, SettingsArgs};
-use crate::failure::NetworkError;
-use crate::live::{PageArgs, library_handle_of};
+use crate::library;
 use crate::output::{note, print_text, printable_path};
-use crate::robot::ensure_built_for;
-use crate::simulate::seconds;
+use crate::robot_description::ensure_built_for;
+use crate::stop::stopped_by_hand;
+use failure::ControlError;
+use operator::{ControlOperator, PageSettings};
 
 /// Our team, and the addresses to receive from and send to. What is not given here is taken from the file,
 /// and else from the league.
@@ -77,8 +68,8 @@ pub(crate) struct ControlArgs {
     robots: Option<String>,
     /// Which robots are started in a simulator, such as 0-5 or 1,4,7; by default the league's number, from 0
     /// on.
-    #[arg(long, value_name = "IDS", value_parser = ids)]
-    ids: Option<Ids>,
+    #[arg(long, value_name = "IDS", value_parser = robot_ids)]
+    ids: Option<RobotIds>,
     /// The team's key: 32 hexadecimal digits in a file, as `openssl rand -hex 16` makes them; needed for
     /// udp:// and serial:.
     #[arg(long, value_name = "FILE")]
@@ -158,10 +149,6 @@ pub(crate) struct CasesArgs {
     settings: SettingsArgs,
 }
 
-/// Robots' numbers, each once, rising.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Ids(Vec<RobotId>);
-
 /// `onetwo control`.
 pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     ensure_built_for(args.robot.as_deref())?;
@@ -171,31 +158,46 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::SUCCESS);
     }
     if let Some(path) = &args.init {
-        init(path, &config.to_toml()).map_err(|error| NetworkError::Init(path.clone(), error))?;
+        init(path, &config.to_toml()).map_err(|error| ControlError::Init(path.clone(), error))?;
         note!("the team's settings are in {}", printable_path(path));
         return Ok(ExitCode::SUCCESS);
     }
-    let usual = Parameters::of(config.league).map_or(0, |parameters| parameters.robots);
+    let by_default = Parameters::of(config.league).map_or(0, |parameters| parameters.robots);
     let robots = match &args.ids {
-        Some(Ids(ids)) => ids.clone(),
-        None => (0..usual).filter_map(RobotId::new).collect(),
+        Some(RobotIds(ids)) => ids.clone(),
+        None => (0..by_default).filter_map(RobotId::new).collect(),
     };
-    let page = (!args.headless).then_some(&args.page);
     let cases = Cases::choose(&args.cases, config.league)?;
-    let keeps = event_loop::Keeps {
-        record: args.record.as_deref(),
-        learned: args.learned.as_deref(),
-        config: args.config.as_deref(),
-        live: args.live_parameters,
+    let page_settings = (!args.headless).then(|| PageSettings {
+        args: &args.page,
+        live_parameters: args.live_parameters,
+        library: cases.library_handle,
+        retrieval: cases.settings,
+    });
+    let settings = RunSettings {
+        config: &config,
+        program: Program { version: env!("CARGO_PKG_VERSION"), commit: env!("ONETWO_COMMIT") },
+        learns: !args.no_learning,
+        cases: cases.library_handle.as_ref().map(LibraryHandle::lasting_base),
+        virtual_robots: VirtualRobots { ids: robots, arguments: cases.robot_arguments },
+        output: OutputFiles {
+            record: args.record.as_deref(),
+            learned: args.learned.as_deref(),
+            config: args.config.as_deref(),
+        },
+        duration: args.duration,
     };
-    event_loop::run(&config, !args.no_learning, &robots, cases, &keeps, args.duration, page)
+    let mut operator = ControlOperator::new(&config, args.config.clone(), page_settings);
+    host::run::run(&settings, &mut operator, stopped_by_hand())?;
+    Ok(ExitCode::SUCCESS)
 }
 
-/// The case library, and the form in which our robots receive cases.
+/// The case library, and what retrieval is set to.
 struct Cases {
     library_handle: Option<LibraryHandle>,
     settings: casebase::RetrievalSettings,
-    description: Vec<OsString>,
+    /// Flags that pass both on to virtual robots.
+    robot_arguments: Vec<OsString>,
 }
 
 impl Cases {
@@ -204,9 +206,9 @@ impl Cases {
         let named = library.map(|directory| [OsString::from("--library"), directory.into()]);
         let set = |(name, value): &(String, String)| ["--set".into(), format!("{name}={value}").into()];
         Ok(Self {
-            library_handle: library_handle_of(league, library)?,
+            library_handle: library::of_league(league, library)?,
             settings: args.settings.choose()?.settings,
-            description: named
+            robot_arguments: named
                 .into_iter()
                 .flatten()
                 .chain(args.settings.given().iter().flat_map(set))
@@ -220,14 +222,11 @@ fn init(path: &Path, text: &str) -> io::Result<()> {
     File::create_new(path)?.write_all(text.as_bytes())
 }
 
-/// Longest file of settings that is read, bytes: one with every setting has 1 kB.
-const CONFIG_LEN_MAX: u64 = 1 << 20;
-
 /// A file of settings.
 fn read(path: &Path) -> Result<TeamSettings, Failure> {
     let text = foreign::read_text(path, CONFIG_LEN_MAX)
-        .map_err(|error| NetworkError::ConfigUnreadable(path.to_owned(), error))?;
-    Ok(TeamSettings::from_toml(&text).map_err(|error| NetworkError::ConfigFile(path.to_owned(), error))?)
+        .map_err(|error| ControlError::ConfigUnreadable(path.to_owned(), error))?;
+    Ok(TeamSettings::from_toml(&text).map_err(|error| ControlError::ConfigFile(path.to_owned(), error))?)
 }
 
 /// Flags override the file, which overrides the defaults.
@@ -264,50 +263,11 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
     };
     let settings = flags.over(file);
     let reported = settings.vision.is_some();
-    let mut config = settings.complete().map_err(NetworkError::Config)?;
+    let mut config = settings.complete()?;
     if !reported && matches!(config.robots, RobotLink::Simulator(_)) {
         config.vision = addresses::VISION_SIMULATED.into();
     }
     Ok(config)
-}
-
-/// Where a simulator takes a team's commands: `HOST[:PORT]` names its control port.
-fn simulator(host: &str, colour: Colour) -> Result<SocketAddr, Failure> {
-    use std::net::ToSocketAddrs;
-    let (name, port) = match host.rsplit_once(':') {
-        Some((name, port)) if !name.contains(':') => (name, port.parse().ok()),
-        _ => (host, Some(addresses::SIMULATOR_PORT)),
-    };
-    let offset = match colour {
-        Colour::Blue => 1,
-        Colour::Yellow => 2,
-    };
-    let port = port.and_then(|port: u16| port.checked_add(offset));
-    let found = port.and_then(|port| (name, port).to_socket_addrs().ok()?.next());
-    found.ok_or_else(|| NetworkError::UnknownSimulator(host.to_owned()).into())
-}
-
-fn ids(text: &str) -> Result<Ids, String> {
-    let wrong = || "expected numbers from 0 to 15, such as 0-5 or 1,4,7".to_owned();
-    let mut ids = Vec::new();
-    for part in text.split(',') {
-        let (first, last) = part.split_once('-').unwrap_or((part, part));
-        let (first, last): (u8, u8) =
-            (first.trim().parse().map_err(|_| wrong())?, last.trim().parse().map_err(|_| wrong())?);
-        for number in first..=last {
-            ids.push(RobotId::new(number).ok_or_else(wrong)?);
-        }
-    }
-    ids.sort_unstable();
-    ids.dedup();
-    if ids.is_empty() { Err(wrong()) } else { Ok(Ids(ids)) }
-}
-
-fn kick(text: &str) -> Result<Calibration, String> {
-    let parts =
-        text.split_once('=').and_then(|(robot, kick)| Some((robot.parse().ok()?, kick.parse().ok()?)));
-    let (robot, kick) = parts.ok_or_else(|| "expected ROBOT=FACTOR, such as 3=1.06".to_owned())?;
-    Ok(Calibration { robot, kick, latency_ms: None })
 }
 
 #[cfg(test)]
@@ -315,7 +275,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn robots_in_a_simulator_are_reported_of_cases_and_settings_in_their_own_words() {
+    fn case_flags_reach_virtual_robots() {
         #[derive(Debug, clap::Parser)]
         struct Line {
             #[command(flatten)]
@@ -323,30 +283,8 @@ mod tests {
         }
         let line = <Line as clap::Parser>::parse_from(["control", "--set", "free_path=fuzzy"]);
         let cases = Cases::choose(&line.cases, rules::League::DivisionB).unwrap();
-        assert_eq!(cases.description, ["--set", "free_path=fuzzy"].map(OsString::from));
+        assert_eq!(cases.robot_arguments, ["--set", "free_path=fuzzy"].map(OsString::from));
         let line = <Line as clap::Parser>::parse_from(["control", "--library", "/nowhere"]);
         assert!(Cases::choose(&line.cases, rules::League::DivisionB).is_err());
-    }
-
-    #[test]
-    fn robots_are_named_by_ranges_and_lists() {
-        let numbers = |text| ids(text).map(|Ids(ids)| ids.iter().map(|id| id.number()).collect::<Vec<_>>());
-        assert_eq!(numbers("0-2"), Ok(vec![0, 1, 2]));
-        assert_eq!(numbers("7,1, 1"), Ok(vec![1, 7]));
-        assert!(numbers("0-16").is_err() && numbers("").is_err() && numbers("5-2").is_err());
-    }
-
-    #[test]
-    fn a_simulator_s_ports_follow_its_control_port() {
-        let port = |host, colour| simulator(host, colour).map(|address| address.port()).ok();
-        assert_eq!(port("127.0.0.1", Colour::Blue), Some(10301));
-        assert_eq!(port("127.0.0.1:20300", Colour::Yellow), Some(20302));
-        assert_eq!(port("127.0.0.1:x", Colour::Blue), None);
-    }
-
-    #[test]
-    fn a_calibration_is_a_robot_and_a_factor() {
-        assert_eq!(kick("3=1.06"), Ok(Calibration { robot: 3, kick: 1.06, latency_ms: None }));
-        assert!(kick("3").is_err());
     }
 }

@@ -13,6 +13,7 @@ use study::evaluation::{EvaluationPlan, Shard};
 use super::report::ReportArgs;
 use super::work::{self, WorkArgs};
 use crate::Failure;
+use crate::args::parsers;
 use crate::setup::SetupArgs;
 
 /// How many trials, and how they are played.
@@ -25,7 +26,7 @@ pub(super) struct JudgeArgs {
     #[arg(short, long, default_value_t = 2009)]
     seed: u64,
     /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` merges the shards.
-    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard)]
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = parsers::shard)]
     shard: Shard,
     #[command(flatten)]
     work: WorkArgs,

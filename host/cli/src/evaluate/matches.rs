@@ -25,8 +25,9 @@ use super::merge::shards;
 use super::report::insert;
 use super::work::{self, WorkArgs, write};
 use crate::Failure;
+use crate::args::parsers::{self, league, match_seconds};
 use crate::args::{DirectoryArgs, SettingsArgs, VERSION};
-use crate::play::{cases, league, seconds};
+use crate::library;
 
 /// Which matches, and the output.
 #[derive(Debug, Args)]
@@ -43,7 +44,7 @@ pub(super) struct MatchesArgs {
     #[arg(short, long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     matches: u32,
     /// Length of a match, simulated seconds.
-    #[arg(short, long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
+    #[arg(short, long, value_name = "SECONDS", default_value_t = 600.0, value_parser = match_seconds)]
     duration: f64,
     /// Random seed.
     #[arg(short, long, default_value_t = 1)]
@@ -69,7 +70,7 @@ pub(super) struct MatchesArgs {
     #[arg(long)]
     round_robin: bool,
     /// Every n-th match from the i-th on, for a cluster; `--merge` merges the shards.
-    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard, conflicts_with = "merge")]
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = parsers::shard, conflicts_with = "merge")]
     shard: Shard,
     /// Play nothing: merge the shards that were written to this directory; may be repeated.
     #[arg(long, value_name = "DIR")]
@@ -103,7 +104,7 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
         let directory = args.work.directory(args.shard)?;
         return args.finish(&identity, &rows, directory);
     }
-    let library_handle = cases(&args.directory, args.league)?;
+    let library_handle = library::of_match(&args.directory, args.league)?;
     let matches = Matches {
         plan: args.plan(),
         base: library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::lasting_base),

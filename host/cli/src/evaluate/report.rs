@@ -17,7 +17,7 @@ use study::evaluation::{Identity, Results, compare, in_words, merge, paper};
 
 use super::{merge as shards, work};
 use crate::Failure;
-use crate::args::{DirectoryArgs, LibraryArgs, VERSION};
+use crate::args::{DirectoryArgs, LibraryArgs, NoSuchSetting, VERSION};
 use crate::output::{note, print_text, printable_path};
 use crate::{picture, setup};
 
@@ -170,7 +170,7 @@ pub(super) fn insert(
 }
 
 fn unwritten(file: &Path, error: std::io::Error) -> Failure {
-    Failure::Picture { file: file.to_owned(), error: picture::SnapshotError::Write(error) }
+    picture::Unwritten { file: file.to_owned(), error: picture::SnapshotError::Write(error) }.into()
 }
 
 /// The maps of the first trials of each cell, if this program plays identical ones.
@@ -191,7 +191,7 @@ fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
         work::evaluation(identity.plan.clone(), setup, &library_handle, identity.library.clone());
     let differences = evaluation.identity().differences(identity);
     if differences.is_empty() {
-        return Map::of(&evaluation, trials).map_err(Failure::Trial);
+        return Ok(Map::of(&evaluation, trials)?);
     }
     let (what, program) = (in_words(&differences), &identity.program);
     note!("no maps: {program} played these trials, this is {VERSION}; what differs here: {what}");
@@ -202,7 +202,7 @@ fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
 fn setup_of(identity: &Identity) -> Result<Setup, Failure> {
     let mut settings = RetrievalSettings::default();
     for (name, value) in &identity.settings {
-        settings.set(name, value).map_err(|error| Failure::setting(name, value, error))?;
+        settings.set(name, value).map_err(|error| NoSuchSetting::new(name, value, error))?;
     }
     let independent = identity.positioning == arena::positioning_label(Positioning::Independent);
     Ok(Setup {

@@ -15,7 +15,7 @@ use study::scenes::{SceneEffect, ScenePlan, scene_effects, scene_table};
 use super::report::insert;
 use super::work::{self, write};
 use crate::Failure;
-use crate::play::league;
+use crate::args::parsers::league;
 use crate::progress::Progress;
 
 /// Which scenes, and how they are printed.
@@ -71,7 +71,7 @@ pub(super) fn run(args: &ScenesArgs) -> Result<ExitCode, Failure> {
     let (line, done, of) = (Progress::open(), AtomicU64::new(0), plan.len() as u64);
     line.set_text("playing");
     let on_played = || line.set(done.fetch_add(1, Ordering::Relaxed) + 1, of);
-    let rows = pool.install(|| plan.play(&on_played)).map_err(Failure::Game)?;
+    let rows = pool.install(|| plan.play(&on_played))?;
     drop(line);
     let csv = to_csv(&rows).map_err(EvaluationError::from)?;
     if let Some(file) = &args.csv {

@@ -12,7 +12,7 @@ use study::skills::{Skill, SkillPlan, SkillRow, TryResult, rows};
 use super::report::insert;
 use super::work;
 use crate::Failure;
-use crate::play::league;
+use crate::args::parsers::league;
 
 /// Which tries, and how they are printed.
 #[derive(Debug, Args)]
@@ -70,7 +70,7 @@ pub(super) fn run(args: &SkillsArgs) -> Result<ExitCode, Failure> {
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
     let pool = pool.map_err(Failure::Threads)?;
-    let results = pool.install(|| plan.play()).map_err(Failure::Game)?;
+    let results = pool.install(|| plan.play())?;
     let table = rows(&plan, &results);
     if args.json {
         let json = serde_json::to_string(&table).map_err(|error| Failure::Output(error.into()))?;
@@ -151,7 +151,7 @@ fn failures(results: &[TryResult]) -> String {
 fn story(plan: &SkillPlan) -> Result<ExitCode, Failure> {
     for tried in plan.tries() {
         let mut lines = Vec::new();
-        let result = tried.play(&mut lines).map_err(Failure::Game)?;
+        let result = tried.play(&mut lines)?;
         let end = match &result.end {
             Ok(time) => format!("succeeded after {time:.2} s"),
             Err(what) => format!("failed: {what}"),

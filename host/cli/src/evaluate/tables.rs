@@ -11,7 +11,8 @@ use study::evaluation::{EvaluationCell, EvaluationPlan, Shard};
 use super::report::ReportArgs;
 use super::work::{self, WorkArgs};
 use crate::Failure;
-use crate::setup::{SetupArgs, approach, opponents, profile, scenario};
+use crate::args::parsers::{self, approach, opponents, profile, scenario};
+use crate::setup::SetupArgs;
 
 /// Which trials, and how they are played.
 #[derive(Debug, Args)]
@@ -24,7 +25,7 @@ pub(super) struct TablesArgs {
     #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` merges the shards.
-    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard)]
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = parsers::shard)]
     shard: Shard,
     #[command(flatten)]
     work: WorkArgs,
@@ -73,6 +74,14 @@ impl TablesArgs {
         };
         let plan = plan.only(wanted);
         let plan = self.trials.map_or(plan.clone(), |trials| plan.with_trials(trials));
-        if plan.is_empty() { Err(Failure::NoTrials) } else { Ok(plan) }
+        if plan.is_empty() { Err(NoTrials.into()) } else { Ok(plan) }
     }
 }
+
+/// The filters of an evaluation leave nothing.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "no trial is left: robots' trials (--profile robots) are against dg, of scenarios 3 and 4 and, asked for, \
+     random; leave out a filter"
+)]
+struct NoTrials;

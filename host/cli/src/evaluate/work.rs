@@ -168,8 +168,3 @@ pub(super) fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
 pub(super) fn print_text(description: &str) -> Result<(), Failure> {
     output::print_text(description)
 }
-
-/// A shard on the command line.
-pub(super) fn shard(label: &str) -> Result<Shard, String> {
-    Shard::from_label(label).ok_or_else(|| "take i/n with i from 1 to n, such as 2/3".to_owned())
-}

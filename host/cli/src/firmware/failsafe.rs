@@ -56,13 +56,13 @@ impl Cause {
 pub(super) struct Outcome {
     /// The speed is limited.
     pub(super) slow: Option<u64>,
-    /// It brakes: dribbler off, kicker discharged.
+    /// Brakes: dribbler off, kicker discharged.
     pub(super) brakes: Option<u64>,
-    /// It stands.
+    /// Standstill.
     pub(super) stands: Option<u64>,
     /// The motors have no current.
     pub(super) released: Option<u64>,
-    /// It may move again: ms after the cause has ended.
+    /// Movement is allowed again: ms after the cause has ended.
     pub(super) again: Option<u64>,
 }
 
@@ -113,9 +113,9 @@ fn outcome(cause: Cause) -> Outcome {
     let mut found = Outcome::default();
     // Frames come every 10 ms; the last good one before the cause starts is 0 ms old.
     let (mut frame, mut command) = (None, None);
-    for ms in 0..BEGINS + LASTS + 2_000 {
+    for ms in 0..CAUSE_AT_MS + CAUSE_LASTS_MS + 2_000 {
         let now = Instant(ms * 1_000);
-        let wrong = (BEGINS + 1..=BEGINS + LASTS).contains(&ms);
+        let wrong = (CAUSE_AT_MS + 1..=CAUSE_AT_MS + CAUSE_LASTS_MS).contains(&ms);
         if ms % 10 == 0 && !(wrong && cause == Cause::Silence) {
             governor.receive_host(now);
             frame = Some(now);
@@ -149,7 +149,7 @@ fn outcome(cause: Cause) -> Outcome {
             wanted.twist.angular = f32::NAN;
         }
         let (given, ruling) = governor.rule(&circumstances, &wanted);
-        let since = ms.saturating_sub(BEGINS);
+        let since = ms.saturating_sub(CAUSE_AT_MS);
         if wrong {
             let first = |place: &mut Option<u64>, holds: bool| {
                 if holds {
@@ -161,17 +161,17 @@ fn outcome(cause: Cause) -> Outcome {
             first(&mut found.brakes, safe && matches!(ruling, Ruling::Braking(_)));
             first(&mut found.stands, given.twist == Twist::default());
             first(&mut found.released, governor.has_let_go());
-        } else if since > LASTS && ruling == Ruling::Allowed {
-            found.again.get_or_insert(since - LASTS);
+        } else if since > CAUSE_LASTS_MS && ruling == Ruling::Allowed {
+            found.again.get_or_insert(since - CAUSE_LASTS_MS);
         }
     }
     found
 }
 
 /// When the cause starts, ms: the robot is armed and drives.
-const BEGINS: u64 = 1_000;
+const CAUSE_AT_MS: u64 = 1_000;
 /// Duration of the cause, ms: longer than a robot needs to stand and to release its motors.
-const LASTS: u64 = 3_000;
+const CAUSE_LASTS_MS: u64 = 3_000;
 
 #[cfg(test)]
 mod tests {
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_host_that_forgets_a_robot_brakes_it_after_100_ms_and_moves_it_with_its_first_word() {
+    fn a_forgotten_robot_brakes_after_100_ms_and_moves_with_the_next_command() {
         let found = ends_well(Cause::NoCommand, 100);
         // Motors hold: the host commands the team.
         assert_eq!((found.brakes, found.released), (Some(100), None));

@@ -8,18 +8,20 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use clap::Args;
-use firmware_build::{Board, Program, boards, build_for_robot, workspace_root};
+use firmware_build::{Board, Program, build_for_robot, workspace_root};
 
-use super::{build, failed};
+use super::build;
+use super::failure::FirmwareError;
 use crate::Failure;
-use crate::failure::FirmwareError;
+use crate::args::parsers;
 use crate::output::note;
+use crate::robot_description::to_build;
 
 /// What is flashed, and where.
 #[derive(Debug, Args)]
 pub(crate) struct FlashArgs {
     /// The board, by its directory's name: its image is built, and flashed.
-    #[arg(long, value_name = "BOARD", default_value = "stm32", value_parser = real)]
+    #[arg(long, value_name = "BOARD", default_value = "stm32", value_parser = parsers::real_board)]
     board: &'static Board,
     /// The robot's description, a file or a built-in name (docs/robots.md); by default what this program is
     /// built for.
@@ -35,7 +37,7 @@ pub(crate) struct FlashArgs {
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
     /// Address of the page in the chip's flash; by default as the board's manifest says.
-    #[arg(long, value_name = "ADDRESS", value_parser = address, requires = "page")]
+    #[arg(long, value_name = "ADDRESS", value_parser = parsers::flash_address, requires = "page")]
     page_address: Option<u32>,
     /// Which probe, where there are several (`probe-rs list`).
     #[arg(long, value_name = "PROBE")]
@@ -47,16 +49,15 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
     // Checked before the firmware is built.
     let there = Command::new(PROGRAM).arg("--version").stdout(Stdio::null()).status();
     if there.is_err_and(|error| error.kind() == ErrorKind::NotFound) {
-        return Err(failed(FirmwareError::NoFlasher(MISSING)));
+        return Err(FirmwareError::NoFlasher(MISSING).into());
     }
     let image = match &args.elf {
         Some(file) => file.clone(),
         None => match &args.robot {
             None => build(Program::Board(args.board))?,
             Some(robot) => {
-                let (source, name) = crate::robot::to_build(robot)?;
-                build_for_robot(&workspace_root(), Program::Board(args.board), &source, &name)
-                    .map_err(failed)?
+                let (source, name) = to_build(robot)?;
+                build_for_robot(&workspace_root(), Program::Board(args.board), &source, &name)?
             }
         },
     };
@@ -66,9 +67,9 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
         match Command::new(PROGRAM).args(&description).status() {
             Ok(status) if status.success() => {}
             Ok(status) => {
-                return Err(failed(FirmwareError::Flasher(line, status)));
+                return Err(FirmwareError::Flasher(line, status).into());
             }
-            Err(error) => return Err(failed(FirmwareError::FlasherStart(line, error))),
+            Err(error) => return Err(FirmwareError::FlasherStart(line, error).into()),
         }
     }
     Ok(())
@@ -95,25 +96,6 @@ fn downloads(args: &FlashArgs, image: &Path) -> Vec<Vec<String>> {
     page.into_iter().chain([call(image, &["--verify", "--preverify"])]).collect()
 }
 
-/// A board that can be flashed.
-fn real(name: &str) -> Result<&'static Board, String> {
-    let mut real = boards().iter().filter(|board| board.firmware.is_some());
-    real.clone().find(|board| board.name == name).ok_or_else(|| {
-        let first = real.next().map_or("", |board| &board.name);
-        let names = real.fold(first.to_owned(), |names, board| names + ", " + &board.name);
-        format!("no such board; there are: {names}")
-    })
-}
-
-/// `0x081e0000`, or decimal.
-fn address(text: &str) -> Result<u32, String> {
-    let parsed = match text.strip_prefix("0x") {
-        Some(digits) => u32::from_str_radix(&digits.replace('_', ""), 16),
-        None => text.parse(),
-    };
-    parsed.map_err(|_| "expected an address such as 0x081e0000".to_owned())
-}
-
 const PROGRAM: &str = "probe-rs";
 const MISSING: &str = "\
 probe-rs is not installed; get it from https://probe.rs, or build it with `cargo install probe-rs-tools --locked` (some 30 minutes)";
@@ -125,7 +107,7 @@ mod tests {
     #[test]
     fn the_page_goes_first_and_to_its_address() {
         let args = FlashArgs {
-            board: real("stm32").unwrap(),
+            board: parsers::real_board("stm32").unwrap(),
             robot: None,
             elf: None,
             chip: None,
@@ -146,7 +128,7 @@ mod tests {
 
     #[test]
     fn an_address_is_hexadecimal_or_decimal() {
-        assert_eq!((address("0x10"), address("10")), (Ok(16), Ok(10)));
-        assert!(address("flash").is_err());
+        assert_eq!((parsers::flash_address("0x10"), parsers::flash_address("10")), (Ok(16), Ok(10)));
+        assert!(parsers::flash_address("flash").is_err());
     }
 }

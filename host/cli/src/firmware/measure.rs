@@ -12,7 +12,7 @@ use hil_sim::{ByTeam, Configuration, Meter, Metered, NativeBackend, QemuBackend,
 use protocol::TeamId;
 use rules::{Colour, League};
 
-use super::{build, failed};
+use super::build;
 use crate::Failure;
 
 /// Deepest stack and longest step of a program.
@@ -46,7 +46,7 @@ fn trials(meter: &Meter) -> Result<(), Failure> {
         for opponents in [Configuration::DefenderGoalie, Configuration::TwoDefenders] {
             let config = TrialConfig::new(scenario, opponents, Approach::Cases, SEED);
             let backend = Metered::new(QemuBackend::new(&image), meter);
-            run(&config, Box::new(backend), &mut []).map_err(Failure::Trial)?;
+            run(&config, Box::new(backend), &mut [])?;
         }
     }
     Ok(())
@@ -61,15 +61,15 @@ fn play(meter: &Meter, seconds: f64) -> Result<(), Failure> {
         its: Metered::new(QemuBackend::new(&image), meter),
         others: NativeBackend::new(base),
     };
-    let mut game = Game::new(&config, &mut backend).map_err(failed)?;
+    let mut game = Game::new(&config, &mut backend)?;
     for _ in 0..(seconds * TICKS_A_SECOND) as u64 {
-        game.step(&mut NoWatcher).map_err(failed)?;
+        game.step(&mut NoWatcher)?;
     }
     Ok(())
 }
 
 fn emulated(body: ImageBody) -> Result<std::path::PathBuf, Failure> {
-    ensure_qemu(Install::ForUser).map_err(failed)?;
+    ensure_qemu(Install::ForUser)?;
     build(Program::Robot(body))
 }
 

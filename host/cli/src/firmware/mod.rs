@@ -6,6 +6,7 @@
 //! is its table). Runs on a PC.
 
 mod failsafe;
+mod failure;
 mod flash;
 mod measure;
 mod new_board;
@@ -20,11 +21,13 @@ use std::process::ExitCode;
 
 use clap::{Args, Subcommand};
 use firmware_build::inspect::{Image, Sizes};
-use firmware_build::{ImageBody, Program, boards, build_for_robot, build_program, workspace_root};
+use firmware_build::{Program, build_for_robot, build_program, workspace_root};
 
 use crate::Failure;
-use crate::failure::FirmwareError;
+use crate::args::parsers;
 use crate::output::print_text;
+use crate::robot_description::to_build;
+use failure::FirmwareError;
 
 /// What to do with the firmware.
 #[derive(Debug, Subcommand)]
@@ -52,7 +55,7 @@ pub(crate) enum FirmwareVerb {
 pub(crate) struct ImagesArgs {
     /// The firmware image: legged, omni, free, udp, a board's name, or the name of another of its programs;
     /// all of them by default.
-    #[arg(long, value_parser = image)]
+    #[arg(long, value_parser = parsers::image)]
     image: Option<Program>,
 }
 
@@ -67,30 +70,6 @@ pub(crate) struct BuildArgs {
     robot: Option<String>,
 }
 
-/// The firmware image of that name: `legged` and `omni`, which the simulator steps tick by tick, `free`,
-/// which runs by its own clock, `udp`, which does so on a network, each real board by its directory's name,
-/// and its other programs by theirs.
-fn image(name: &str) -> Result<Program, String> {
-    match name {
-        "legged" => Ok(Program::Robot(ImageBody::Legged)),
-        "omni" => Ok(Program::Robot(ImageBody::Omni)),
-        "free" => Ok(Program::Free),
-        "udp" => Ok(Program::Udp),
-        _ => Program::of_board(name).or_else(|| more(name)).ok_or_else(|| {
-            let real = boards().iter().filter(|board| board.firmware.is_some());
-            let real: Vec<_> = real.map(|board| board.name.as_str()).collect();
-            format!("expected legged, omni, free, udp, or a board: {}", real.join(", "))
-        }),
-    }
-}
-
-/// Another program of a real board, by its binary's name.
-fn more(name: &str) -> Option<Program> {
-    Program::images()
-        .into_iter()
-        .find(|program| matches!(program, Program::More(_, _)) && program.name() == name)
-}
-
 impl ImagesArgs {
     fn programs(&self) -> Vec<Program> {
         self.image.map_or_else(Program::images, |image| vec![image])
@@ -102,13 +81,11 @@ pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
     match verb {
         FirmwareVerb::Build(args) => {
             let mut text = String::new();
-            let robot = args.robot.as_deref().map(crate::robot::to_build).transpose()?;
+            let robot = args.robot.as_deref().map(to_build).transpose()?;
             for program in args.images.programs() {
                 let path = match &robot {
                     None => build(program)?,
-                    Some((source, name)) => {
-                        build_for_robot(&workspace_root(), program, source, name).map_err(failed)?
-                    }
+                    Some((source, name)) => build_for_robot(&workspace_root(), program, source, name)?,
                 };
                 let sizes = sizes_of(&path)?;
                 let _ = writeln!(text, "{}: {} B flash, {} B RAM", path.display(), sizes.flash, sizes.ram);
@@ -125,17 +102,13 @@ pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn failed(error: impl Into<FirmwareError>) -> Failure {
-    Failure::Firmware(error.into())
-}
-
 /// A failure that concerns a file.
 fn at<E>(path: &Path, what: impl Fn(PathBuf, E) -> FirmwareError) -> impl Fn(E) -> Failure {
-    move |error| Failure::Firmware(what(path.to_owned(), error))
+    move |error| what(path.to_owned(), error).into()
 }
 
 fn build(program: Program) -> Result<PathBuf, Failure> {
-    build_program(&workspace_root(), program).map_err(failed)
+    Ok(build_program(&workspace_root(), program)?)
 }
 
 /// Longest ELF file that is read, bytes: ours have 8 MB with debug information.

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use clap::Args;
 use firmware_build::{CHIPS, workspace_root};
 
-use super::failed;
 use crate::Failure;
 use crate::output::print_text;
 
@@ -22,7 +21,7 @@ pub(crate) struct NewBoardArgs {
 /// Writes it, and says what to do next.
 pub(super) fn run(args: &NewBoardArgs) -> Result<(), Failure> {
     let NewBoardArgs { name, chip } = args;
-    let written = firmware_build::new_board(&workspace_root(), name, chip).map_err(failed)?;
+    let written = firmware_build::new_board(&workspace_root(), name, chip)?;
     let (file, _) = written.registered;
     let mut text = String::new();
     let _ = writeln!(text, "wrote {}, and a row in {}", written.directory.display(), file.display());

@@ -11,9 +11,9 @@ use protocol::provision::{PAGE_LEN, Provision, page, read};
 use protocol::{RobotId, TeamId};
 use rules::League;
 
-use super::{at, failed};
+use super::at;
+use super::failure::FirmwareError;
 use crate::Failure;
-use crate::failure::FirmwareError;
 use crate::output::{note, print_text};
 
 /// The robot's identity.
@@ -63,8 +63,8 @@ impl LeagueLabel {
 
 /// Writes the page.
 pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
-    let robot = RobotId::new(args.robot).ok_or_else(|| failed(FirmwareError::NoRobot(args.robot)))?;
-    let key = host::shell::key::read(&args.key_file).map_err(failed)?;
+    let robot = RobotId::new(args.robot).ok_or(FirmwareError::NoRobot(args.robot))?;
+    let key = host::shell::key::read(&args.key_file)?;
     if let Some(warning) = &key.warning {
         note!("onetwo: {warning}");
     }

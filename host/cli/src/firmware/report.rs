@@ -10,9 +10,9 @@ use firmware_build::{Program, workspace_root};
 
 use super::at;
 use super::failsafe;
+use super::failure::FirmwareError;
 use super::size::{Known, POOL_LEAST, Share};
 use crate::Failure;
-use crate::failure::FirmwareError;
 use crate::output::print_text;
 
 /// Output of the report.
@@ -57,7 +57,7 @@ fn text(all: &[Known], seconds: f64) -> String {
             "\n### {}, by crate\n\n| crate | flash, B | RAM, B |\n|---|---:|---:|",
             known.program.name()
         );
-        for part in known.sizes.crates.iter().take(REPORTED) {
+        for part in known.sizes.crates.iter().take(CRATES_NAMED) {
             let _ = writeln!(text, "| {} | {} | {} |", part.name, part.flash, part.ram);
         }
         let _ = writeln!(text, "\n| static of {POOL_LEAST} B or more | owner | RAM, B |\n|---|---|---:|");
@@ -113,7 +113,7 @@ fn shares(all: &[Known], text: &mut String) {
 
 const FILE: &str = "docs/firmware.md";
 /// Crates named in the report.
-const REPORTED: usize = 12;
+const CRATES_NAMED: usize = 12;
 const HEAD: &str = "\
 # What the robots' firmware takes, and what it does when something breaks
 

@@ -12,9 +12,10 @@ use firmware_build::{Install, MACHINE, Program, ensure_qemu};
 use protocol::provision::{Provision, read};
 use protocol::slot::PAGE_ADDRESS;
 
-use super::{at, build, failed};
+use super::failure::FirmwareError;
+use super::{at, build};
 use crate::Failure;
-use crate::failure::FirmwareError;
+use crate::args::parsers;
 
 /// How robots are run.
 #[derive(Debug, Args)]
@@ -38,7 +39,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIRECTORY", requires = "udp")]
     journal: Option<PathBuf>,
     /// End after this number of seconds.
-    #[arg(short, long, value_name = "SECONDS", value_parser = crate::simulate::seconds, requires = "udp")]
+    #[arg(short, long, value_name = "SECONDS", value_parser = parsers::seconds, requires = "udp")]
     duration: Option<f64>,
 }
 
@@ -50,21 +51,21 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let page = match args.page.as_slice() {
         [] => None,
         [file] => Some(file.as_path()),
-        [..] => return Err(failed(FirmwareError::OneLine(args.page.len()))),
+        [..] => return Err(FirmwareError::OneLine(args.page.len()).into()),
     };
     // Checked before anything is built or started.
     page.map(check).transpose()?;
-    let qemu = ensure_qemu(Install::ForUser).map_err(failed)?;
+    let qemu = ensure_qemu(Install::ForUser)?;
     let mut command = Command::new(qemu);
     command.args(qemu_arguments(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
     let status = command.status().map_err(FirmwareError::Emulator)?;
-    if status.success() { Ok(()) } else { Err(failed(FirmwareError::Ended(status))) }
+    if status.success() { Ok(()) } else { Err(FirmwareError::Ended(status).into()) }
 }
 
 /// Longest file of a key page that is read, bytes: one sector of flash.
 const PAGE_FILE_LEN_MAX: u64 = 1 << 17;
 
-/// What a robot reads from the page.
+/// The page as a robot reads it.
 fn check(file: &Path) -> Result<Provision, Failure> {
     let bytes = foreign::read(file, PAGE_FILE_LEN_MAX).map_err(at(file, FirmwareError::File))?;
     read(&bytes, false).map_err(at(file, FirmwareError::PageFile))

@@ -10,7 +10,7 @@ use firmware_build::{ImageBody, Program};
 use serde::Serialize;
 
 use super::measure::{Measured, measure};
-use super::{ImagesArgs, build, failed, sizes_of};
+use super::{ImagesArgs, build, sizes_of};
 use crate::Failure;
 use crate::output::print_text;
 
@@ -142,7 +142,7 @@ pub(super) fn run(args: &SizeArgs) -> Result<(), Failure> {
         images.into_iter().map(|program| Known::of(program, seconds)).collect::<Result<_, Failure>>()?;
     if args.json {
         let data: Vec<_> = all.iter().map(|known| json(known, args.largest)).collect();
-        return print_text(&(serde_json::to_string_pretty(&data).map_err(failed)? + "\n"));
+        return print_text(&(serde_json::to_string_pretty(&data)? + "\n"));
     }
     let mut text = String::new();
     for known in &all {

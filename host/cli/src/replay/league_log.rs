@@ -6,6 +6,9 @@
 
 use std::process::ExitCode;
 
+use feed::recording::{
+    Asked, LogClock, Missing, Moment, RecordedError, RefereeEventFinder, Score, in_file, is_meant,
+};
 use host::referee::{Listener, SenderAddress};
 use host::tracking::{Tracker, VisionVerdict};
 use host::{Host, HostSettings, Input};
@@ -13,14 +16,10 @@ use protocol::Instant;
 use rules::Colour;
 use ssl::log::{MessageKind, Packet, Record};
 
-use super::clock::LogClock;
-use super::match_event::{Finder, is_meant};
-use super::moment::{Moment, Score};
+use super::ReplayArgs;
 use super::report::{self, Gap, Report};
-use super::{ReplayArgs, failed};
 use crate::Failure;
-use crate::failure::{Asked, Missing, RecordedError};
-use crate::output::print_text;
+use crate::output::{json_line, print_text};
 use crate::progress::Progress;
 
 /// Vision that is silent longer than this is a gap: robots are blind after three missed periods at 60 Hz, and
@@ -30,7 +29,7 @@ const VISION_GAP_S: f64 = 0.2;
 const REFEREE_GAP_S: f64 = 2.0;
 
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
-    let mut reader = ssl::log::open(&args.file).map_err(RecordedError::Log).map_err(failed(&args.file))?;
+    let mut reader = ssl::log::open(&args.file).map_err(in_file(&args.file))?;
     let mut pass = Pass::new(args)?;
     let bar = Progress::open();
     let mut at_moment = None;
@@ -43,27 +42,23 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     }
     drop(bar);
     if let Some(moment) = at_moment {
-        print_text(&if args.json { json(&moment)? } else { moment.text() })?;
+        print_text(&if args.json { json_line(&moment)? } else { moment.text() })?;
         return Ok(ExitCode::SUCCESS);
     }
     let damage = reader.end().filter(|end| !end.is_whole()).map(ToString::to_string);
     let back_steps = reader.counts().back_steps;
     if args.at.is_some() || args.event.is_some() {
         let missing = Missing { asked: pass.asked(args), damage };
-        return Err(failed(&args.file)(RecordedError::NotThere(missing)));
+        return Err(in_file(&args.file)(RecordedError::NotThere(missing)).into());
     }
     let report = pass.finish(damage, back_steps);
-    print_text(&if args.json { json(&report)? } else { report.text() })?;
+    print_text(&if args.json { json_line(&report)? } else { report.text() })?;
     let nothing = report.messages.is_empty().then_some(RecordedError::Empty);
     match report.damage.map(RecordedError::Damaged).or(nothing) {
         // What could be read is printed above; the exit code reports that it is not the whole file.
-        Some(error) => Err(failed(&args.file)(error)),
+        Some(error) => Err(in_file(&args.file)(error).into()),
         None => Ok(ExitCode::SUCCESS),
     }
-}
-
-fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
-    serde_json::to_string(value).map(|text| text + "\n").map_err(|error| Failure::Output(error.into()))
 }
 
 struct Pass<'a> {
@@ -74,7 +69,7 @@ struct Pass<'a> {
     now: Instant,
     tracker: Tracker,
     listener: Listener,
-    finder: Finder,
+    finder: RefereeEventFinder,
     team: Option<Team>,
     /// Number of requested events found so far.
     met: u32,
@@ -89,7 +84,7 @@ struct Team {
 impl<'a> Pass<'a> {
     fn new(args: &'a ReplayArgs) -> Result<Self, Failure> {
         let limits = args.league.limits();
-        let limits = limits.ok_or(RecordedError::NoRules).map_err(failed(&args.file))?;
+        let limits = limits.ok_or(RecordedError::NoRules).map_err(in_file(&args.file))?;
         let report = Report { kind: "log", file: args.file.display().to_string(), ..Report::default() };
         let team = args.team.map(|colour| Team {
             host: Host::new(HostSettings::new(colour, args.league, 1), Instant(0)),
@@ -104,7 +99,7 @@ impl<'a> Pass<'a> {
             now: Instant(0),
             tracker: Tracker::default(),
             listener: Listener::new(limits, None, Instant(0)),
-            finder: Finder::default(),
+            finder: RefereeEventFinder::default(),
             team,
             met: 0,
         })

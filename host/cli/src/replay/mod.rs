@@ -4,49 +4,23 @@
 //! Two kinds of files, distinguished by their first bytes: the league's log files (of any team) and traces of
 //! ours (docs/architecture.md §7.4).
 
-#[path = "../../../feed/src/recording/beside.rs"]
-mod beside;
-#[path = "../../../feed/src/recording/clock.rs"]
-mod clock;
-#[path = "../../../feed/src/recording/collect.rs"]
-mod collect;
-#[path = "../../../feed/src/recording/compare.rs"]
 mod compare;
-#[path = "../../../feed/src/recording/comparison.rs"]
-mod comparison;
-#[path = "../../../feed/src/decided.rs"]
-mod decided;
-#[path = "../../../feed/src/recording/decisions.rs"]
-mod decisions;
 mod league_log;
-#[path = "../../../feed/src/match_event.rs"]
-pub(crate) mod match_event;
-#[path = "../../../feed/src/recording/moment.rs"]
-mod moment;
 mod report;
-#[path = "../../../feed/src/recording/sheet.rs"]
-mod sheet;
-#[path = "../../../feed/src/recording/projector.rs"]
 mod show;
 mod trace;
-#[path = "../../../feed/src/recording/unlike.rs"]
-mod unlike;
 
-use std::io::{BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use flate2::bufread::MultiGzDecoder;
+use feed::recording::{RecordedError, begins_as_trace, in_file};
 use rules::{Colour, League};
-
-pub(crate) use collect::{OpenLibrary, collect};
-pub(crate) use moment::phase_description;
 
 use crate::Failure;
 use crate::args::DirectoryArgs;
-use crate::failure::RecordedError;
-use crate::live::PageArgs;
+use crate::args::page::PageArgs;
+use crate::args::parsers::{colour, league, moment_in_seconds};
 
 /// The file, and what to print of it.
 #[derive(Debug, Args)]
@@ -105,69 +79,19 @@ With --compare: 0 the traces are equal, 1 they differ, or one of them is damaged
 /// `onetwo replay`.
 pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     if args.watch {
-        return show::run(args, &args.page);
+        return show::run(args);
     }
     if let Some(other) = &args.compare {
         return compare::run(args, other);
     }
-    if begins(&args.file)?.starts_with(TRACE) {
+    if begins_as_trace(&args.file)? {
         return trace::run(args);
     }
     if args.check {
-        return Err(failed(&args.file)(RecordedError::NoTrace));
+        return Err(in_file(&args.file)(RecordedError::NoTrace).into());
     }
     if args.problems {
-        return Err(failed(&args.file)(RecordedError::NoDecisions));
+        return Err(in_file(&args.file)(RecordedError::NoDecisions).into());
     }
     league_log::run(args)
-}
-
-/// The first bytes of every trace.
-const TRACE: &[u8] = b"ONETWO_TRACE";
-
-/// A file's bytes, gunzipped where they are gzipped.
-fn open(file: &Path) -> Result<Box<dyn Read>, Failure> {
-    Ok(if is_gzipped(file)? { Box::new(MultiGzDecoder::new(bytes(file)?)) } else { Box::new(bytes(file)?) })
-}
-
-fn bytes(file: &Path) -> Result<BufReader<std::fs::File>, Failure> {
-    foreign::open(file).map(BufReader::new).map_err(RecordedError::Open).map_err(failed(file))
-}
-
-/// Whether a file is gzipped: then it has an end mark, without which it is cut.
-fn is_gzipped(file: &Path) -> Result<bool, Failure> {
-    let mut begin = [0; 2];
-    Ok(bytes(file)?.read_exact(&mut begin).is_ok() && begin == [0x1f, 0x8b])
-}
-
-fn begins(file: &Path) -> Result<Vec<u8>, Failure> {
-    let mut begin = Vec::new();
-    // Errors of decompression are reported by the reader of log files.
-    let _ = open(file)?.take(TRACE.len() as u64).read_to_end(&mut begin);
-    Ok(begin)
-}
-
-fn failed(file: &Path) -> impl Fn(RecordedError) -> Failure {
-    move |error| Failure::Recorded { file: file.to_owned(), error }
-}
-
-fn moment_in_seconds(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|s: &f64| (0.0..1e9).contains(s))
-        .ok_or_else(|| "expected seconds from the begin, such as 12.5".to_owned())
-}
-
-pub(crate) fn colour(label: &str) -> Result<Colour, String> {
-    [Colour::Blue, Colour::Yellow]
-        .into_iter()
-        .find(|colour| colour.label() == label)
-        .ok_or_else(|| "expected blue or yellow".to_owned())
-}
-
-pub(crate) fn league(name: &str) -> Result<League, String> {
-    [League::Ssl2013, League::DivisionB, League::DivisionA]
-        .into_iter()
-        .find(|league| league.name() == name)
-        .ok_or_else(|| "expected ssl-2013, division-b or division-a".to_owned())
 }

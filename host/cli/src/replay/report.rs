@@ -3,14 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use feed::recording::{ClockStep, Rate, RefereeEvent, Score, Sheet};
 use foreign::printable;
 use host::{referee, tracking};
 use serde::Serialize;
-
-use super::clock::{ClockStep, Rate};
-use super::match_event::MatchEvent;
-use super::moment::Score;
-use super::sheet::Sheet;
 
 /// A league log file in numbers.
 #[derive(Debug, Default, Serialize)]
@@ -30,7 +26,7 @@ pub(super) struct Report {
     pub(super) damage: Option<String>,
     /// Messages that are earlier than the one before.
     pub(super) back_steps: u64,
-    /// Where the recorder's clock was set, or nothing at all was recorded.
+    /// Times at which the recorder's clock was set, or nothing at all was recorded.
     pub(super) clock_steps: Vec<ClockStep>,
     /// Steps beyond those that are listed.
     pub(super) clock_steps_more: u64,
@@ -43,7 +39,7 @@ pub(super) struct Report {
     pub(super) ball_speed_max: f32,
     pub(super) score: Score,
     #[serde(rename = "happenings")]
-    pub(super) match_events: Vec<MatchEvent>,
+    pub(super) match_events: Vec<RefereeEvent>,
     pub(super) gaps: Vec<Gap>,
     /// Gaps beyond those that are listed.
     pub(super) gaps_more: u64,
@@ -224,7 +220,7 @@ impl Report {
         }
         let Score { blue, yellow } = self.score;
         lines.push(format!("score: blue {blue} : {yellow} yellow"));
-        lines.extend(self.match_events.iter().map(MatchEvent::line));
+        lines.extend(self.match_events.iter().map(RefereeEvent::line));
         if let Some(damage) = &self.damage {
             lines.push(format!("the file is damaged: {}", printable(damage)));
         }

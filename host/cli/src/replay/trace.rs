@@ -3,32 +3,28 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::Path;
 use std::process::ExitCode;
 
 use arena::ledger::CaseTable;
+use feed::recording::{
+    Asked, Decision, Decisions, Missing, Moment, RecordedError, RefereeEvent, RefereeEventFinder, Sheet,
+    TraceFile, hosts_of, in_file, is_meant, record_label,
+};
 use foreign::{excerpt, printable};
 use hil_sim::small_size::worlds::WorldChoice;
 use host::Host;
 use host::record::header::RecordingHeader;
-use host::record::recheck::Recheck;
-use host::record::trace::{Reader, RecordKind, TraceEnd};
+use host::record::trace::RecordKind;
 use protocol::Instant;
-use protocol::frame::TeamKey;
 use serde::Serialize;
 use ssl::Message;
 use ssl::referee::Referee;
 use ssl::vision::WrapperPacket;
 
-use super::decisions::{Decision, Decisions};
-use super::match_event::{Finder, MatchEvent, is_meant};
-use super::moment::Moment;
-use super::sheet::Sheet;
-use super::{ReplayArgs, failed, is_gzipped, open};
+use super::ReplayArgs;
 use crate::Failure;
-use crate::failure::{Asked, Missing, RecordedError};
-use crate::live::library_handle_of;
-use crate::output::{note, print_text};
+use crate::library;
+use crate::output::{json_line, note, print_text};
 use crate::progress::Progress;
 
 #[derive(Debug, Serialize)]
@@ -47,10 +43,10 @@ struct Report<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     damage: Option<String>,
     #[serde(rename = "happenings")]
-    match_events: &'a [MatchEvent],
+    match_events: &'a [RefereeEvent],
     hosts: Vec<Outcome>,
     same_decisions: bool,
-    /// What became of every case, by team.
+    /// Results of every case, by team.
     cases: BTreeMap<&'static str, CaseTable>,
     /// Every decision, with its problem.
     decisions: &'a [Decision],
@@ -67,36 +63,33 @@ struct Outcome {
 
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let file = &args.file;
-    let mut reader = Reader::new(open(file)?).map_err(RecordedError::Trace).map_err(failed(file))?;
-    let header =
-        RecordingHeader::from_json(reader.header()).map_err(RecordedError::Header).map_err(failed(file))?;
-    let key = key(args.key_file.as_deref(), file, &header)?;
-    let mut recheck = Recheck::new(&header, key).map_err(RecordedError::Header).map_err(failed(file))?;
-    let (mut finder, mut match_events, mut sheet) = (Finder::default(), Vec::new(), Sheet::default());
+    let mut trace = TraceFile::open(file)?;
+    let bar = Progress::open();
+    let mut recheck = trace.recheck(args.key_file.as_deref(), &bar)?;
+    let (mut finder, mut match_events, mut sheet) =
+        (RefereeEventFinder::default(), Vec::new(), Sheet::default());
     let (mut records, mut strays, mut met) = (BTreeMap::new(), 0, 0);
     let mut span: Option<(Instant, Instant)> = None;
     // Every host receives the same referee; events are taken from the host that is displayed.
     let first_shown =
-        header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::label));
+        trace.header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::label));
     let first_shown = first_shown.unwrap_or(0);
-    let league = header.league().map_err(RecordedError::Header).map_err(failed(file))?;
-    let mut decisions =
-        Decisions::new(library_handle_of(league, args.directory.library.as_deref())?.as_ref());
-    let bar = Progress::open();
-    for record in reader.by_ref() {
+    let library = library::of_league(trace.league, args.directory.library.as_deref())?;
+    let mut decisions = Decisions::new(library.as_ref());
+    for record in trace.by_ref() {
         bar.add(1);
         if let Some(at) = args.at
             && record.at.0 as f64 * 1e-6 > at
             && let Some(host) = recheck.host(first_shown)
         {
             drop(bar);
-            return show(args, host, &all(&recheck), Instant((at * 1e6) as u64), None);
+            return show(args, host, &hosts_of(&recheck), Instant((at * 1e6) as u64), None);
         }
         let (first, last) = span.get_or_insert((record.at, record.at));
         (*first, *last) = ((*first).min(record.at), (*last).max(record.at));
-        *records.entry(label(record.kind)).or_insert(0) += 1;
+        *records.entry(record_label(record.kind)).or_insert(0) += 1;
         if let Some(feed) = recheck.host(first_shown) {
-            decisions.look(record.at, feed, &all(&recheck));
+            decisions.look(record.at, feed, &hosts_of(&recheck));
         }
         strays += u64::from(!recheck.feed(&record));
         if record.kind == RecordKind::Vision
@@ -111,20 +104,20 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
                 sheet.referee(&packet);
                 finder.read(&packet, record.at.0 as f64 * 1e-6, &mut match_events);
             }
-            let asked = |h: &&MatchEvent| args.event.as_deref().is_some_and(|name| is_meant(h, name));
+            let asked = |h: &&RefereeEvent| args.event.as_deref().is_some_and(|name| is_meant(h, name));
             for match_event in match_events[before..].iter().filter(asked) {
                 met += 1;
                 if met == args.nth
                     && let Some(host) = recheck.host(first_shown)
                 {
                     drop(bar);
-                    return show(args, host, &all(&recheck), record.at, Some(match_event.name.clone()));
+                    return show(args, host, &hosts_of(&recheck), record.at, Some(match_event.name.clone()));
                 }
             }
         }
     }
     drop(bar);
-    let damage = damage_of(reader.end()).or(unfinished(file, &recheck)?);
+    let damage = trace.cut(&recheck)?;
     if args.at.is_some() || args.event.is_some() {
         let (_, last) = span.unwrap_or_default();
         let end = last.0 as f64 * 1e-6;
@@ -132,14 +125,14 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
             None => Asked::TraceTime(args.at.unwrap_or_default(), end),
             Some(name) => Asked::TraceEvent { met, name: name.clone(), nth: args.nth, end },
         };
-        return Err(failed(file)(RecordedError::NotThere(Missing { asked, damage })));
+        return Err(in_file(file)(RecordedError::NotThere(Missing { asked, damage })).into());
     }
     if let Some(feed) = recheck.host(first_shown) {
-        decisions.finish(feed, &all(&recheck));
+        decisions.finish(feed, &hosts_of(&recheck));
     }
     recheck.finish(damage.is_some());
-    let cases = decisions.tables(&all(&recheck));
-    let hosts: Vec<Outcome> = (header.hosts.iter().zip(recheck.results()))
+    let cases = decisions.tables(&hosts_of(&recheck));
+    let hosts: Vec<Outcome> = (trace.header.hosts.iter().zip(recheck.results()))
         .map(|(host, (counts, difference))| Outcome {
             colour: host.colour.clone(),
             inputs: counts.inputs,
@@ -151,7 +144,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let report = Report {
         kind: "trace",
         file: file.display().to_string(),
-        header: &header,
+        header: &trace.header,
         span_s: (first.0 as f64 * 1e-6, last.0 as f64 * 1e-6),
         records,
         strays,
@@ -166,14 +159,14 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let output = if args.problems {
         problems(args, &decisions)
     } else if args.json {
-        serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))? + "\n"
+        json_line(&report)?
     } else {
         report.text()
     };
     print_text(&output)?;
     match report.damage {
         // What could be read is printed above.
-        Some(place) => Err(failed(file)(RecordedError::Damaged(place))),
+        Some(place) => Err(in_file(file)(RecordedError::Damaged(place)).into()),
         None if report.same_decisions => Ok(ExitCode::SUCCESS),
         None => Ok(ExitCode::FAILURE),
     }
@@ -199,20 +192,6 @@ fn problems(args: &ReplayArgs, decisions: &Decisions) -> String {
     text
 }
 
-/// A trace that is not compressed has no end mark. If packets to robots are missing after its last input, it
-/// was cut there: the hosts' decisions all come before.
-pub(super) fn unfinished(file: &Path, recheck: &Recheck) -> Result<Option<String>, Failure> {
-    let cut = !is_gzipped(file)? && recheck.is_unfinished();
-    Ok(cut.then(|| {
-        "cut after its last input: the packets that followed are missing; all before was read".to_owned()
-    }))
-}
-
-/// Every host of the recording in its current state.
-pub(super) fn all(recheck: &Recheck) -> Vec<&Host> {
-    (0..).map_while(|number| recheck.host(number)).collect()
-}
-
 /// Prints the moment as `host` sees it, with what every host decides.
 fn show(
     args: &ReplayArgs,
@@ -222,47 +201,8 @@ fn show(
     event: Option<String>,
 ) -> Result<ExitCode, Failure> {
     let moment = Moment::new(at.0 as f64 * 1e-6, event, &host.tracker().world(at), host.game(), hosts);
-    let output = if args.json {
-        serde_json::to_string(&moment).map_err(|error| Failure::Output(error.into()))? + "\n"
-    } else {
-        moment.text()
-    };
-    print_text(&output)?;
+    print_text(&if args.json { json_line(&moment)? } else { moment.text() })?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// The key that hosts sealed with, if any.
-pub(super) fn key(
-    key_file: Option<&Path>,
-    recording: &Path,
-    header: &RecordingHeader,
-) -> Result<TeamKey, Failure> {
-    match key_file {
-        Some(file) => {
-            let read = host::shell::key::read(file).map_err(RecordedError::Key).map_err(failed(file))?;
-            if let Some(warning) = read.warning {
-                note!("warning: {warning}");
-            }
-            Ok(read.key)
-        }
-        None if header.hosts.iter().any(|host| host.keyed) => Err(failed(recording)(RecordedError::NoKey)),
-        None => Ok(TeamKey::ZERO),
-    }
-}
-
-pub(super) fn label(kind: RecordKind) -> &'static str {
-    match kind {
-        RecordKind::Vision => "vision",
-        RecordKind::Referee => "referee",
-        RecordKind::Robot => "robots",
-        RecordKind::Timeout => "deadlines",
-        RecordKind::Sent => "sent",
-        RecordKind::Halt => "halts",
-        RecordKind::Orders => "strategy",
-        RecordKind::Parameter => "parameters",
-        RecordKind::Test => "tests",
-        RecordKind::Lost => "lost",
-    }
 }
 
 impl Report<'_> {
@@ -285,7 +225,7 @@ impl Report<'_> {
         for (name, n) in &self.records {
             let _ = writeln!(out, "  {n:>8} {name}");
         }
-        for line in self.sheet.text().into_iter().chain(self.match_events.iter().map(MatchEvent::line)) {
+        for line in self.sheet.text().into_iter().chain(self.match_events.iter().map(RefereeEvent::line)) {
             let _ = writeln!(out, "{line}");
         }
         if self.strays > 0 {
@@ -313,8 +253,3 @@ impl Report<'_> {
 
 /// Longest version and commit of the recording program that are printed, characters.
 const VERSION_LEN: usize = 60;
-
-/// The damage of a trace with this end.
-pub(super) fn damage_of(end: Option<&TraceEnd>) -> Option<String> {
-    end.filter(|end| !end.is_whole()).map(ToString::to_string)
-}

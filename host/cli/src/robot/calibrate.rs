@@ -9,10 +9,10 @@ use clap::{Args, ValueEnum};
 use robots::{Description, Finding};
 use toml_edit::{Array, DocumentMut, Item, Value};
 
-use super::{fit, read};
+use super::fit;
 use crate::Failure;
-use crate::failure::DescriptionError;
 use crate::output::print_text;
+use crate::robot_description::{DescriptionError, read};
 
 /// Arguments of `robot calibrate`.
 #[derive(Debug, Args)]
@@ -193,7 +193,7 @@ fn name_of(file: &Path) -> String {
 
 /// Largest file of measurements, bytes.
 const MEASUREMENTS_MAX: u64 = 1 << 24;
-/// How the comment of a fit begins.
+/// Start of the comment of a fit.
 const FITTED: &str = "# Fitted to ";
 
 #[cfg(test)]

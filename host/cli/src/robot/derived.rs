@@ -11,7 +11,7 @@ use robots::Description;
 /// A derived number: its name, value and unit.
 pub(super) type Row = (&'static str, f32, &'static str);
 
-/// What follows from the description.
+/// Quantities that follow from the description.
 pub(super) fn rows(of: &Description) -> Vec<Row> {
     let degrees = of.wheel_angles();
     let [distance, radius] = [of.number("wheels.distance"), of.number("wheels.radius")];

@@ -7,9 +7,10 @@ use robots::{Description, Value};
 use rules::RobotSpec;
 use serde_json::{Map, Value as Json, json};
 
-use super::{derived, own, read};
+use super::derived;
 use crate::Failure;
 use crate::output::print_text;
+use crate::robot_description::{own, read};
 
 /// Arguments of `robot show`.
 #[derive(Debug, Args)]

@@ -1,17 +1,12 @@
 //! `onetwo simulate`: a Small Size field that any team's software can play on, by the league's simulation
 //! protocol (docs/architecture.md §7.3).
 //!
-//! The simulator is a value without sockets ([`hil_sim::small_size::server`]); here are its sockets, its
-//! clock, and the internal referee. It goes on where a port is taken or a network is missing, and reports how
-//! to fix it.
+//! [`hil_sim::small_size::network`] has sockets, clock and referee; here are the flags, the terminal and the
+//! page.
 
-mod autoref;
-mod board;
-mod commanders;
-mod crew;
-mod ports;
-mod server_loop;
-mod sync;
+mod dashboard;
+mod failure;
+mod spectator;
 
 use std::net::SocketAddr;
 use std::process::ExitCode;
@@ -20,15 +15,18 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use clap::{Args, ValueEnum};
 use hil_sim::small_size::NoiseParameters;
 use hil_sim::small_size::compatibility::Profile;
-use hil_sim::small_size::server::{Server, ServerSettings};
+use hil_sim::small_size::network::{self, NetworkSettings, RefereeKind};
+use hil_sim::small_size::server::ServerSettings;
 use hil_sim::small_size::worlds::{WorldChoice, WorldModel};
 use rules::League;
 use ssl::net::addresses;
 
 use crate::Failure;
-use crate::failure::NetworkError;
-use crate::replay::league;
-use crate::robot;
+use crate::args::parsers::{cameras, controller, field_speed, league, referee, seconds};
+use crate::robot_description::ensure_built_for;
+use crate::stop::stopped_by_hand;
+use failure::SimulateError;
+use spectator::FieldOperator;
 
 /// What is simulated, and the addresses to receive from and send to.
 #[derive(Debug, Args)]
@@ -43,7 +41,7 @@ pub(crate) struct SimulateArgs {
     #[arg(short, long, default_value_t = 1)]
     seed: u64,
     /// Simulated seconds a second; clients change it by the protocol.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = field_speed)]
     speed: f32,
     /// Compatibility profile: how it behaves on the wire, as itself or as another simulator, to test a
     /// program against.
@@ -87,7 +85,7 @@ pub(crate) struct SimulateArgs {
     assistant: bool,
     /// With `--referee none` or an address: report game events to that game controller as an automatic
     /// referee; port 10007 by default. With --assistant it also decides about goals.
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = autoref::address)]
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = controller)]
     autoref: Option<String>,
     /// Destination of the internal referee's packets.
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::REFEREE.into())]
@@ -119,15 +117,6 @@ impl SimulateArgs {
     }
 }
 
-/// Source of referee messages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum RefereeKind {
-    Internal,
-    None,
-    /// A game controller, received on this address.
-    Received(SocketAddr),
-}
-
 /// A profile on the command line.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum ProfileLabel {
@@ -142,9 +131,9 @@ enum ProfileLabel {
 /// `onetwo simulate`.
 pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     if args.referee == RefereeKind::Internal && (args.assistant || args.autoref.is_some()) {
-        return Err(NetworkError::InternalReferee.into());
+        return Err(SimulateError::InternalReferee.into());
     }
-    robot::ensure_built_for(args.robot.as_deref())?;
+    ensure_built_for(args.robot.as_deref())?;
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let profile = match args.profile {
         ProfileLabel::Ours => Profile::Ours,
@@ -152,7 +141,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
         ProfileLabel::ErForce => Profile::ErForce,
     };
     let settings = ServerSettings::of(args.league, profile, args.seed, unix.as_secs_f64());
-    let no_rules = || NetworkError::NotOnWheels(args.league);
+    let no_rules = || SimulateError::NotOnWheels(args.league);
     let mut settings = settings.ok_or_else(no_rules)?;
     settings.model = WorldModel::of(args.league, &args.world).ok_or_else(no_rules)?;
     settings.robots = args.robots.unwrap_or(settings.robots);
@@ -163,55 +152,30 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     if args.ideal {
         settings.model.parameters.noise = NoiseParameters::NONE;
     }
-    let server = Server::new(&settings);
-    server_loop::run(args, &settings, server, unix.as_micros() as u64)
-}
-
-fn speed(text: &str) -> Result<f32, String> {
-    let most = hil_sim::small_size::server::SPEED_MAX;
-    text.parse()
-        .ok()
-        .filter(|x| (0.0..=most).contains(x))
-        .ok_or_else(|| format!("expected 0 (stands still) to {most}"))
-}
-
-fn cameras(text: &str) -> Result<u32, String> {
-    text.parse().ok().filter(|n| [1, 2, 4].contains(n)).ok_or_else(|| "expected 1, 2 or 4".to_owned())
-}
-
-pub(crate) fn seconds(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|s| (0.0..1e7).contains(s))
-        .ok_or_else(|| "expected seconds, such as 60".to_owned())
-}
-
-fn referee(text: &str) -> Result<RefereeKind, String> {
-    match text {
-        "internal" => Ok(RefereeKind::Internal),
-        "none" => Ok(RefereeKind::None),
-        address => address
-            .parse()
-            .map(RefereeKind::Received)
-            .map_err(|_| "expected internal, none or an address such as 224.5.23.1:10003".to_owned()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_referee_is_internal_absent_or_external() {
-        assert_eq!(referee("internal"), Ok(RefereeKind::Internal));
-        assert_eq!(referee("none"), Ok(RefereeKind::None));
-        assert_eq!(referee("224.5.23.1:10003"), Ok(RefereeKind::Received(addresses::REFEREE.into())));
-        assert!(referee("224.5.23.1").is_err_and(|description| description.contains("10003")));
-    }
-
-    #[test]
-    fn only_what_can_be_simulated_is_taken() {
-        assert!(speed("0").is_ok() && speed("-1").is_err() && speed("NaN").is_err());
-        assert!(cameras("4").is_ok() && cameras("3").is_err());
-    }
+    let title = format!(
+        "simulating {}, {robots} v {robots} robots, world {}, seed {}; Ctrl-C ends it",
+        args.league.name(),
+        settings.model.name,
+        args.seed,
+        robots = settings.robots,
+    );
+    let network = NetworkSettings {
+        server: settings,
+        unix_us: unix.as_micros() as u64,
+        robots: args.robots,
+        speed: args.speed,
+        listen: args.listen,
+        port: args.ports,
+        legacy_port: args.legacy_port(),
+        sync: args.sync,
+        vision: args.vision,
+        interface: args.interface.clone(),
+        referee: args.referee,
+        referee_to: args.referee_to,
+        assistant: args.assistant,
+        autoref: args.autoref.clone(),
+        duration: args.duration,
+    };
+    network::run(&network, &mut FieldOperator::new(args, title), stopped_by_hand())?;
+    Ok(ExitCode::SUCCESS)
 }

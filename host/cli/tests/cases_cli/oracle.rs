@@ -65,7 +65,7 @@ struct Row {
 }
 
 #[test]
-fn explain_agrees_with_retrieve_on_10_000_problems_of_the_built_in_and_of_a_random_library() {
+fn explain_agrees_with_retrieve_on_10_000_problems_of_two_libraries() {
     let random = scratch("explain-agrees", &[]);
     RandomLibrary::new(23, 30).write(&random).expect("a library can be written");
     let built_in = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../casebase/library/cases/four-legged");

@@ -5,10 +5,11 @@ use arena::game::{Game, Watcher};
 use geometry::Point;
 use hil_sim::small_size::Ball;
 use host::robot_test::{TestOrder, TestRefused, TestState};
+use host::run::test_text;
 use rules::state::RefereeCommand;
 use rules::{Colour, Phase};
 
-use super::{description_of_test, test_of};
+use super::test_of;
 
 /// The team that tests, and how many of its kicks the ball was put back for.
 #[derive(Debug, Default)]
@@ -33,7 +34,7 @@ impl KickTests {
         if self.running.is_some() {
             begin_at_the_middle(game);
         }
-        Ok(format!("{}: {}", team.label(), description_of_test(order)))
+        Ok(format!("{}: {}", team.label(), test_text(order)))
     }
 
     /// Puts the ball back after a kick, and lets the game run unless it is halted.

@@ -10,7 +10,7 @@ use rules::{Colour, FieldSpec};
 
 /// Least distance to other robots and to the ball at which a robot without a place in the case is put, m: two
 /// robots and as much free space between.
-const APART: f32 = 0.36;
+const CLEARANCE_M: f32 = 0.36;
 
 /// Teams and robots of the match.
 pub(super) struct Sides<'a> {
@@ -42,7 +42,7 @@ impl Sides<'_> {
 /// A situation.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Situation {
-    /// Where the ball lies.
+    /// Place of the ball.
     pub(super) ball: Point<Field>,
     /// Poses of all robots.
     pub(super) robots: Vec<(Who, Pose<Field>)>,
@@ -85,10 +85,12 @@ fn place(base: &CaseBase<'_>, id: CaseId, sides: &Sides<'_>) -> Option<Situation
         let places = kickoff_places(sides.field, sides.own(who.colour), false);
         // The first of the places is the keeper's; if it is occupied, the keeper stands beside it.
         let beside = places[0];
-        let keeps = [0.0, APART + 0.05, -APART - 0.05].map(|y| Point::new(beside.x(), beside.y() + y));
+        let keeps =
+            [0.0, CLEARANCE_M + 0.05, -CLEARANCE_M - 0.05].map(|y| Point::new(beside.x(), beside.y() + y));
         let places = if who.id == sides.keeper(who.colour) { &keeps[..] } else { &places[1..] };
         let clear = |at: &&Point<Field>| {
-            at.distance(ball) > APART && robots.iter().all(|(_, pose)| pose.position.distance(**at) > APART)
+            at.distance(ball) > CLEARANCE_M
+                && robots.iter().all(|(_, pose)| pose.position.distance(**at) > CLEARANCE_M)
         };
         let free = places.iter().find(clear).or(places.first())?;
         robots.push((*who, facing(*free, ball)));
@@ -104,7 +106,6 @@ fn facing(at: Point<Field>, ball: Point<Field>) -> Pose<Field> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::live::library_handle_of;
     use rules::League;
 
     fn all_robots() -> Vec<Who> {
@@ -115,7 +116,7 @@ mod tests {
 
     #[test]
     fn every_case_of_division_b_is_set_up_with_no_robot_on_another() {
-        let library_handle = library_handle_of(League::DivisionB, None).unwrap().unwrap();
+        let library_handle = LibraryHandle::named(League::DivisionB.name()).unwrap();
         let field = League::DivisionB.field();
         let present = all_robots();
         for blue_goal in [GoalEnd::Negative, GoalEnd::Positive] {

@@ -10,34 +10,33 @@ use protocol::Instant;
 use rules::Colour;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
-use super::ReplayArgs;
-use super::compare::{Playing, compare};
-use crate::Failure;
+use super::compare::{PlaySettings, Playing, compare};
+use super::failure::RecordingFailure;
+use super::unlike::Unlike;
 
-/// Robots that are closer to each other in the two traces are not joined by a line, m: the width of a line.
-const APART: f32 = 0.02;
+/// Least distance of a robot's places in the two traces that are joined by a line, m: the width of a line.
+const JOINED_FROM_M: f32 = 0.02;
 
 /// The second trace, played as far as the first.
-pub(super) struct Beside<'a> {
+pub struct Beside<'a> {
     playing: Playing<'a>,
-    /// What differs first, until it was told.
+    /// The first difference, until it was reported.
     first: Option<MatchEvent>,
 }
 
 impl<'a> Beside<'a> {
     /// Compares both traces as a whole for their first difference, then begins to play the second.
-    pub(super) fn open(args: &'a ReplayArgs, other: &'a Path) -> Result<Self, Failure> {
-        let report = compare(args, other)?;
-        let description = |unlike: &super::unlike::Unlike| {
-            let super::unlike::Unlike { what, of, a, b, .. } = unlike;
-            format!("the traces differ first here: {}: {of}; A: {a}; B: {b}", what.label())
-        };
-        let first = report.first().map(|unlike| MatchEvent::fault(unlike.at_s, description(unlike)));
-        Ok(Self { playing: Playing::open(args, other)?, first })
+    pub fn open(file: &Path, other: &'a Path, with: PlaySettings<'_>) -> Result<Self, RecordingFailure> {
+        let report = compare([file, other], with)?;
+        let first = report.first().map(|Unlike { at_s, what, of, a, b, .. }| {
+            let label = what.label();
+            MatchEvent::fault(*at_s, format!("the traces differ first here: {label}: {of}; A: {a}; B: {b}"))
+        });
+        Ok(Self { playing: Playing::open(other, with)?, first })
     }
 
-    /// What differs first in words, for the terminal.
-    pub(super) fn description(&self) -> String {
+    /// The first difference in words, for the terminal.
+    pub fn description(&self) -> String {
         let found = self.first.as_ref();
         found.map_or_else(
             || "the traces are equal".to_owned(),
@@ -46,14 +45,15 @@ impl<'a> Beside<'a> {
     }
 
     /// Plays on to `now`; the event of the first difference once it is reached.
-    pub(super) fn play(&mut self, now: Instant) -> Option<MatchEvent> {
+    pub fn play(&mut self, now: Instant) -> Option<MatchEvent> {
         self.playing.play(now.0 / TICK_US);
         self.first.take_if(|event| event.t <= now.0 as f64 * 1e-6)
     }
 
-    /// Where its ball and robots are at `now`, and how far from those of `world`.
-    pub(super) fn layer(&self, now: Instant, world: &host::world::World) -> Layer {
-        let name = self.playing.file.file_name().map_or_else(Default::default, |name| name.to_string_lossy());
+    /// Ball and robots of the second trace at `now`, joined with those of `world`.
+    pub fn layer(&self, now: Instant, world: &host::world::World) -> Layer {
+        let name =
+            self.playing.file().file_name().map_or_else(Default::default, |name| name.to_string_lossy());
         let mut layer = Layer {
             name: "other-trace".to_owned(),
             label: format!("B: {}", foreign::printable(&name)),
@@ -67,7 +67,7 @@ impl<'a> Beside<'a> {
                 let place = |point: Point<Field>| [milli(point.x()), milli(point.y())];
                 let radii = [radius, radius];
                 layer.shapes.push(Shape::Ellipse { at: place(at), radii, tone, fill: false, note });
-                if let Some(with) = with.filter(|with| with.distance(at) > APART) {
+                if let Some(with) = with.filter(|with| with.distance(at) > JOINED_FROM_M) {
                     let points = vec![place(with), place(at)];
                     layer.shapes.push(Shape::Line { points, tone, arrow: true, dashed: true });
                 }

@@ -15,26 +15,27 @@ const STEP_BACK_NS: i64 = 20_000_000;
 /// Sources of a match send at 1 Hz or faster.
 const PAUSE_S: f64 = 2.0;
 
-/// Where the recorder's clock was set, or nothing was recorded.
+/// A step of the recorder's clock, or a pause of the recording.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct ClockStep {
+pub struct ClockStep {
     /// Time of the step on the summed clock.
-    pub(super) at_s: f64,
+    pub at_s: f64,
     /// By how much; negative: set back. Positive: set forward, or nothing was recorded for this time.
-    pub(super) by_s: f64,
+    pub by_s: f64,
 }
 
 /// Sums a log file's time.
 #[derive(Debug, Default)]
-pub(super) struct LogClock {
+pub struct LogClock {
     last_ns: Option<i64>,
     /// Since the first message; falls by fractions of a millisecond where neighbours are out of order.
     counted_ns: i64,
     /// The greatest of it.
     now_ns: i64,
-    pub(super) steps: Vec<ClockStep>,
+    /// Steps of the recorder's clock, the first of them.
+    pub steps: Vec<ClockStep>,
     /// Steps beyond those that are listed.
-    pub(super) steps_more: u64,
+    pub steps_more: u64,
 }
 
 /// Number of steps that are listed; beyond it they are only counted.
@@ -42,7 +43,7 @@ const STEPS_LISTED: usize = 20;
 
 impl LogClock {
     /// The time of a message with the recorder's time stamp. Never falls.
-    pub(super) fn read(&mut self, timestamp_ns: i64) -> Instant {
+    pub fn read(&mut self, timestamp_ns: i64) -> Instant {
         let last = self.last_ns.replace(timestamp_ns).unwrap_or(timestamp_ns);
         let difference = timestamp_ns.saturating_sub(last);
         if difference <= -STEP_BACK_NS {
@@ -60,7 +61,7 @@ impl LogClock {
     }
 
     /// The time of the last message.
-    pub(super) fn now(&self) -> Instant {
+    pub fn now(&self) -> Instant {
         Instant(u64::try_from(self.now_ns / 1000).unwrap_or(0))
     }
 
@@ -72,7 +73,7 @@ impl LogClock {
 
 /// Rate of a message while it comes: pauses (and steps of the clock, which look the same) are left out.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Rate {
+pub struct Rate {
     last_s: Option<f64>,
     first_s: f64,
     differences: u64,
@@ -82,7 +83,7 @@ pub(super) struct Rate {
 
 impl Rate {
     /// Records a message at `at_s`; returns the time since the one before.
-    pub(super) fn came(&mut self, at_s: f64) -> Option<f64> {
+    pub fn came(&mut self, at_s: f64) -> Option<f64> {
         let Some(last) = self.last_s.replace(at_s) else {
             self.first_s = at_s;
             return None;
@@ -97,7 +98,7 @@ impl Rate {
     }
 
     /// Per second; 0 for a single message.
-    pub(super) fn hz(&self) -> f64 {
+    pub fn hz(&self) -> f64 {
         let whole_s = self.last_s.unwrap_or(self.first_s) - self.first_s;
         // A message rarer than every pause has no usual differences.
         let (n, seconds) =

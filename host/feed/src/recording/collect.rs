@@ -5,82 +5,88 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use arena::CycleEnd;
-use arena::cases::{LibraryHandle, problem};
+use arena::cases::{LibraryError, LibraryHandle, problem};
 use arena::game::TICK_US;
 use arena::ledger::Followed;
 use arena::successful_plays::PlayFinder;
 use case_tools::Files;
-use foreign::excerpt;
-use host::record::header::RecordingHeader;
-use host::record::recheck::Recheck;
-use host::record::trace::Reader;
+use foreign::{excerpt, printable_path};
 use host::referee::SenderAddress;
 use host::{Host, HostSettings, Input};
 use protocol::{Instant, RobotId};
 use rules::Colour;
 use ssl::log::MessageKind;
+
 use study::learning::{CasePlay, Collected, Evidence, LearnError, Situation, Variant};
+use thiserror::Error;
+
+use super::ReadObserver;
 
 use super::clock::LogClock;
 use super::decisions::Decisions;
-use super::trace::{all, damage_of, key};
-use super::{TRACE, begins, failed, open};
-use crate::Failure;
-use crate::args::LibraryArgs;
-use crate::failure::RecordedError;
-use crate::output::{note, printable_path};
-use crate::progress::Progress;
+use super::failure::{RecordedError, RecordingFailure, in_file};
+use super::trace_file::{TraceFile, begin, begins_as_trace, hosts_of};
+
+/// Why nothing is collected.
+#[derive(Debug, Error)]
+pub enum CollectError {
+    /// The library cannot be used.
+    #[error(transparent)]
+    Library(#[from] LibraryError),
+    /// Learning refuses the library.
+    #[error(transparent)]
+    Learn(#[from] LearnError),
+    /// A recording cannot be used.
+    #[error(transparent)]
+    Recording(#[from] RecordingFailure),
+}
 
 /// The library whose cases are counted.
-pub(crate) struct OpenLibrary {
-    pub(crate) handle: LibraryHandle,
+pub struct OpenLibrary {
+    /// The library as it was opened.
+    pub handle: LibraryHandle,
     /// The same with its files; names and texts alone count, wherever it lies.
-    pub(crate) variant: Variant,
+    pub variant: Variant,
 }
 
 impl OpenLibrary {
-    /// The library that the command line names.
-    pub(crate) fn open(args: &LibraryArgs) -> Result<Self, Failure> {
-        Self::of(crate::library::open(args)?)
-    }
-
-    /// An opened one.
-    pub(crate) fn of(handle: LibraryHandle) -> Result<Self, Failure> {
-        let refused = |findings| {
-            let directory = handle.directory().map_or_else(PathBuf::new, Path::to_owned);
-            Failure::faulty_library(directory, findings)
-        };
-        let files = handle.files().map_err(refused)?;
+    /// An opened library with its files.
+    pub fn of(handle: LibraryHandle) -> Result<Self, CollectError> {
+        let files = handle.files().map_err(|findings| LibraryError::Faulty {
+            directory: handle.directory().map_or_else(PathBuf::new, Path::to_owned),
+            findings,
+        })?;
         let texts = files.cases.iter().map(|file| (file.name.as_str(), file.text.as_str()));
         let files = Files::from_texts(&files.league, &files.rules.text, &texts.collect::<Vec<_>>());
-        let variant = Variant::new(files).map_err(|e| Failure::Learning(LearnError::Library(e)))?;
+        let variant = Variant::new(files).map_err(LearnError::Library)?;
         Ok(Self { handle, variant })
     }
 }
 
-/// What these files give to the library: evidence (unless `cases` is false) and plays. A file that is given
+/// Gains of the library from these files: evidence (unless `cases` is false) and plays. A file that is given
 /// twice counts once.
-pub(crate) fn collect(
+pub fn collect(
     files: &[PathBuf],
     known: &OpenLibrary,
     key_file: Option<&Path>,
     cases: bool,
-) -> Result<Collected, Failure> {
+    observer: &dyn ReadObserver,
+) -> Result<Collected, CollectError> {
     let (mut collected, mut read) = (Collected::default(), BTreeSet::new());
     for file in files {
         // One that is not there is reported by its reader.
         if !read.insert(file.canonicalize().unwrap_or_else(|_| file.clone())) {
             continue;
         }
-        let begin = begins(file)?;
-        let more = if begin.starts_with(TRACE) {
-            from_trace(file, known, key_file, cases)?
+        let begin = begin(file)?;
+        let more = if begins_as_trace(file)? {
+            from_trace(file, known, key_file, cases, observer)?
         } else if begin.starts_with(LOG) {
-            from_log(file, known)?
+            from_log(file, known, observer)?
         } else if begin.first().is_none_or(|first| *first == b'{' || first.is_ascii_whitespace()) {
             from_text(file)?
         } else {
-            return Err(failed(file)(RecordedError::NoRecording));
+            return Err(in_file(file)(RecordedError::NoRecording).into());
         };
         collected = collected.merge(more);
     }
@@ -88,8 +94,8 @@ pub(crate) fn collect(
 }
 
 /// `evidence.jsonl`.
-fn from_text(file: &Path) -> Result<Collected, Failure> {
-    let failed = |what: String| failed(file)(RecordedError::Damaged(what));
+fn from_text(file: &Path) -> Result<Collected, RecordingFailure> {
+    let failed = |what: String| in_file(file)(RecordedError::Damaged(what));
     let text = foreign::read_text(file, TEXT_LEN_MAX).map_err(|error| failed(error.to_string()))?;
     Collected::from_jsonl(&text).map_err(failed)
 }
@@ -100,24 +106,20 @@ fn from_trace(
     known: &OpenLibrary,
     key_file: Option<&Path>,
     cases: bool,
-) -> Result<Collected, Failure> {
-    let mut reader = Reader::new(open(file)?).map_err(RecordedError::Trace).map_err(failed(file))?;
-    let header =
-        RecordingHeader::from_json(reader.header()).map_err(RecordedError::Header).map_err(failed(file))?;
-    let league = header.league().map_err(RecordedError::Header).map_err(failed(file))?;
-    if known.handle.simulated_league()? != league {
-        return Err(other_league(file, league.name(), known));
+    observer: &dyn ReadObserver,
+) -> Result<Collected, CollectError> {
+    let mut trace = TraceFile::open(file)?;
+    if known.handle.simulated_league()? != trace.league {
+        return Err(other_league(file, trace.league.name(), known).into());
     }
-    let key = key(key_file, file, &header)?;
-    let mut recheck = Recheck::new(&header, key).map_err(RecordedError::Header).map_err(failed(file))?;
+    let mut recheck = trace.recheck(key_file, observer)?;
     let mut decisions = Decisions::new(Some(&known.handle));
     let (mut finder, mut tick) = (PlayFinder::default(), 0);
     let mut bases: [BTreeSet<u32>; 2] = Default::default();
-    let bar = Progress::open();
-    for record in reader.by_ref() {
-        bar.add(1);
+    for record in trace.by_ref() {
+        observer.record();
         if let Some(feed) = recheck.host(0) {
-            let hosts = all(&recheck);
+            let hosts = hosts_of(&recheck);
             decisions.look(record.at, feed, &hosts);
             if record.at.0 / TICK_US > tick {
                 tick = record.at.0 / TICK_US;
@@ -130,46 +132,55 @@ fn from_trace(
         }
         recheck.feed(&record);
     }
-    drop(bar);
     if let Some(feed) = recheck.host(0) {
-        decisions.finish(feed, &all(&recheck));
+        decisions.finish(feed, &hosts_of(&recheck));
     }
-    if let Some(damage) = damage_of(reader.end()) {
-        note!("{}: {damage}; what was before counts", printable_path(file));
+    if let Some(damage) = trace.damage() {
+        observer.note(&format!("{}: {damage}; what was before counts", printable_path(file)));
     }
-    let world = header.world.as_deref().map_or_else(|| "field".to_owned(), |world| excerpt(world, WORLD_LEN));
+    let world =
+        trace.header.world.as_deref().map_or_else(|| "field".to_owned(), |world| excerpt(world, WORLD_LEN));
     let mut evidence = Evidence::default();
     if cases {
-        let counted = Counted { file, known, world: &world, decisions: &decisions };
-        for host in all(&recheck) {
+        let counted = Counted { file, known, world: &world, decisions: &decisions, observer };
+        for host in hosts_of(&recheck) {
             counted.add(host, &bases[host.settings().us as usize], &mut evidence)?;
         }
     }
     Ok(Collected { evidence, plays: finder.finish().into_iter().collect() })
 }
 
-/// What is known of a trace's plays.
+/// A trace whose plays are counted.
 struct Counted<'t> {
     file: &'t Path,
     known: &'t OpenLibrary,
     world: &'t str,
     decisions: &'t Decisions,
+    observer: &'t dyn ReadObserver,
 }
 
 impl Counted<'_> {
     /// Adds the plays of a host's team. A play is to goal if a goal of the team followed it in the window of
     /// the ledger: until the team lost the ball or play stopped for another reason. A shot alone does not
     /// count: most cases end with one, whatever it is worth.
-    fn add(&self, host: &Host, bases: &BTreeSet<u32>, evidence: &mut Evidence) -> Result<(), Failure> {
+    fn add(
+        &self,
+        host: &Host,
+        bases: &BTreeSet<u32>,
+        evidence: &mut Evidence,
+    ) -> Result<(), RecordingFailure> {
         let (us, own) = (host.settings().us, self.known.variant.base().hash());
         let plays: Vec<_> = self.decisions.ledger().team(us).plays().collect();
         if let Some(other) = bases.iter().find(|base| **base != own).filter(|_| !plays.is_empty()) {
             if bases.contains(&own) {
                 let file = printable_path(self.file);
-                note!("{file}: {}'s robots had several case bases; its plays are left out", us.label());
+                self.observer.note(&format!(
+                    "{file}: {}'s robots had several case bases; its plays are left out",
+                    us.label()
+                ));
                 return Ok(());
             }
-            return Err(failed(self.file)(RecordedError::OtherLibrary { recorded: *other, library: own }));
+            return Err(in_file(self.file)(RecordedError::OtherLibrary { recorded: *other, library: own }));
         }
         let mut unknown = 0;
         for (cycle, followed) in plays {
@@ -202,24 +213,30 @@ impl Counted<'_> {
         }
         if unknown > 0 {
             let file = printable_path(self.file);
-            note!("{file}: the situations of {unknown} plays of {} are not known: left out", us.label());
+            self.observer.note(&format!(
+                "{file}: the situations of {unknown} plays of {} are not known: left out",
+                us.label()
+            ));
         }
         Ok(())
     }
 }
 
 /// A league log file: plays of both teams, whoever they are.
-fn from_log(file: &Path, known: &OpenLibrary) -> Result<Collected, Failure> {
+fn from_log(
+    file: &Path,
+    known: &OpenLibrary,
+    observer: &dyn ReadObserver,
+) -> Result<Collected, CollectError> {
     let league = known.handle.simulated_league()?;
     if league.limits().is_none() {
-        return Err(other_league(file, "the Small Size League", known));
+        return Err(other_league(file, "the Small Size League", known).into());
     }
-    let mut reader = ssl::log::open(file).map_err(RecordedError::Log).map_err(failed(file))?;
+    let mut reader = ssl::log::open(file).map_err(in_file(file))?;
     let mut host = Host::new(HostSettings::new(Colour::Blue, league, 1), Instant(0));
     let (mut finder, mut clock) = (PlayFinder::default(), LogClock::default());
-    let bar = Progress::open();
     for record in reader.by_ref() {
-        bar.add(1);
+        observer.record();
         let now = clock.read(record.timestamp_ns);
         let input = match record.kind {
             MessageKind::Vision2014 => Input::Vision(&record.payload),
@@ -230,16 +247,15 @@ fn from_log(file: &Path, known: &OpenLibrary) -> Result<Collected, Failure> {
         while host.poll_packet().is_some() {}
         finder.look(&host, now.0 as f64 * 1e-6);
     }
-    drop(bar);
     if let Some(damage) = reader.end().filter(|end| !end.is_whole()) {
-        note!("{}: {damage}; what was before counts", printable_path(file));
+        observer.note(&format!("{}: {damage}; what was before counts", printable_path(file)));
     }
     Ok(Collected { evidence: Evidence::default(), plays: finder.finish().into_iter().collect() })
 }
 
-fn other_league(file: &Path, recorded: &str, known: &OpenLibrary) -> Failure {
+fn other_league(file: &Path, recorded: &str, known: &OpenLibrary) -> RecordingFailure {
     let library = known.handle.league().to_owned();
-    failed(file)(RecordedError::OtherLeague { recorded: recorded.to_owned(), library })
+    in_file(file)(RecordedError::OtherLeague { recorded: recorded.to_owned(), library })
 }
 
 /// The first bytes of every league log file.

@@ -1,34 +1,39 @@
 //! `compare`: two traces played in step, tick by tick of 10 ms: their hosts decide again side by side, and
-//! records, orders, positions and decisions on cases are compared. Exit code 1 where they differ.
+//! records, orders, positions and decisions on cases are compared.
 
 use std::path::Path;
-use std::process::ExitCode;
 
+use arena::cases::LibraryHandle;
 use arena::game::TICK_US;
 use host::Host;
 use host::record::header::{HostHeader, RecordingHeader};
 use host::record::recheck::Recheck;
-use host::record::trace::{Reader, Record};
+use host::record::trace::Record;
 use protocol::{Instant, RobotId, Who};
-use rules::Colour;
+use rules::{Colour, League};
 
+use super::ReadObserver;
 use super::comparison::{Comparison, Ended, Report, settings};
-use super::decided::Decided;
 use super::decisions::Decisions;
-use super::trace::{all, damage_of, key, unfinished};
+use super::failure::{RecordedError, RecordingFailure, in_file};
+use super::trace_file::{TraceFile, begins_as_trace, hosts_of};
 use super::unlike::{self, What};
-use super::{ReplayArgs, TRACE, begins, failed, open};
-use crate::Failure;
-use crate::failure::RecordedError;
-use crate::live::library_handle_of;
-use crate::output::print_text;
-use crate::progress::Progress;
+use crate::decided::Decided;
+
+/// Names, key and observer of the playing of traces.
+#[derive(Clone, Copy)]
+pub struct PlaySettings<'a> {
+    /// Names of the cases, where there are any.
+    pub library: Option<&'a LibraryHandle>,
+    /// File of the key that the hosts' frames are sealed with.
+    pub key_file: Option<&'a Path>,
+    /// Takes warnings, and counts what was read.
+    pub observer: &'a dyn ReadObserver,
+}
 
 /// A trace that is played.
 pub(super) struct Playing<'a> {
-    pub(super) file: &'a Path,
-    header: RecordingHeader,
-    reader: Reader<Box<dyn std::io::Read>>,
+    trace: TraceFile<'a>,
     pub(super) recheck: Recheck,
     decisions: Decisions,
     /// The first record that was not played yet.
@@ -37,22 +42,17 @@ pub(super) struct Playing<'a> {
 }
 
 impl<'a> Playing<'a> {
-    pub(super) fn open(args: &ReplayArgs, file: &'a Path) -> Result<Self, Failure> {
-        if !begins(file)?.starts_with(TRACE) {
-            return Err(failed(file)(RecordedError::NoTrace));
-        }
-        let mut reader = Reader::new(open(file)?).map_err(RecordedError::Trace).map_err(failed(file))?;
-        let header = RecordingHeader::from_json(reader.header())
-            .map_err(RecordedError::Header)
-            .map_err(failed(file))?;
-        let league = header.league().map_err(RecordedError::Header).map_err(failed(file))?;
-        let library_handle = library_handle_of(league, args.directory.library.as_deref())?;
-        let recheck = Recheck::new(&header, key(args.key_file.as_deref(), file, &header)?)
-            .map_err(RecordedError::Header)
-            .map_err(failed(file))?;
-        let next = reader.next();
-        let decisions = Decisions::new(library_handle.as_ref());
-        Ok(Self { file, header, reader, recheck, decisions, next, span: None })
+    pub(super) fn open(file: &'a Path, settings: PlaySettings<'_>) -> Result<Self, RecordingFailure> {
+        let mut trace = TraceFile::open(file)?;
+        let recheck = trace.recheck(settings.key_file, settings.observer)?;
+        let next = trace.next();
+        let decisions = Decisions::new(settings.library);
+        Ok(Self { trace, recheck, decisions, next, span: None })
+    }
+
+    /// The path that the trace was opened by.
+    pub(super) const fn file(&self) -> &'a Path {
+        self.trace.file()
     }
 
     /// The tick of the next record.
@@ -67,64 +67,45 @@ impl<'a> Playing<'a> {
             && let Some(record) = self.next.take()
         {
             if let Some(feed) = self.recheck.host(0) {
-                self.decisions.look(record.at, feed, &all(&self.recheck));
+                self.decisions.look(record.at, feed, &hosts_of(&self.recheck));
             }
             self.recheck.feed(&record);
             let (first, last) = self.span.get_or_insert((record.at, record.at));
             (*first, *last) = ((*first).min(record.at), (*last).max(record.at));
             played.push(record);
-            self.next = self.reader.next();
+            self.next = self.trace.next();
         }
         played
     }
 
-    fn finish(&mut self) -> Result<Ended, Failure> {
+    fn finish(&mut self) -> Result<Ended, RecordingFailure> {
         if let Some(feed) = self.recheck.host(0) {
-            self.decisions.finish(feed, &all(&self.recheck));
+            self.decisions.finish(feed, &hosts_of(&self.recheck));
         }
-        let damage = damage_of(self.reader.end()).or(unfinished(self.file, &self.recheck)?);
+        let damage = self.trace.cut(&self.recheck)?;
         let (first, last) = self.span.unwrap_or_default();
         Ok(Ended {
-            file: self.file.display().to_string(),
+            file: self.file().display().to_string(),
             span_s: (first.0 as f64 * 1e-6, last.0 as f64 * 1e-6),
             damage,
         })
     }
 
-    fn colours(&self) -> Result<Vec<Colour>, Failure> {
-        let colours = self.header.hosts.iter().map(HostHeader::colour).collect::<Result<_, _>>();
-        colours.map_err(RecordedError::Header).map_err(failed(self.file))
+    fn colours(&self) -> Result<Vec<Colour>, RecordingFailure> {
+        let colours = self.trace.header.hosts.iter().map(HostHeader::colour).collect::<Result<_, _>>();
+        colours.map_err(in_file(self.file()))
     }
 }
 
-/// Plays `args.file` and `other` in step, and prints what differs.
-pub(super) fn run(args: &ReplayArgs, other: &Path) -> Result<ExitCode, Failure> {
-    let report = compare(args, other)?;
-    let output = if args.json {
-        serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))? + "\n"
-    } else {
-        report.text()
-    };
-    print_text(&output)?;
-    match report.damaged() {
-        Some(i) => Err(failed([&args.file, other][i])(RecordedError::Damaged(report.damage(i)))),
-        None if report.same() => Ok(ExitCode::SUCCESS),
-        None => Ok(ExitCode::FAILURE),
-    }
-}
-
-/// Plays `args.file` and `other` in step; what differs.
-pub(super) fn compare(args: &ReplayArgs, other: &Path) -> Result<Report, Failure> {
-    // What cannot be compared is told before hosts are built: a host refuses another case base by itself.
-    comparable(&args.file, other)?;
-    let mut pair = [Playing::open(args, &args.file)?, Playing::open(args, other)?];
+/// Plays two traces in step; what differs. They are to be [`comparable`].
+pub fn compare(files: [&Path; 2], with: PlaySettings<'_>) -> Result<Report, RecordingFailure> {
+    let mut pair = [Playing::open(files[0], with)?, Playing::open(files[1], with)?];
     let colours = pair[0].colours()?;
-    let mut comparison = Comparison::new(settings(&pair[0].header, &pair[1].header), &colours);
-    let bar = Progress::open();
+    let mut comparison = Comparison::new(settings(&pair[0].trace.header, &pair[1].trace.header), &colours);
     // The first record of the trace that goes on where the other has ended, and which one it is.
     let mut more = None;
     while let (Some(a), Some(b)) = (pair[0].tick(), pair[1].tick()) {
-        bar.add(1);
+        with.observer.record();
         let tick = a.min(b);
         let mut played = pair.each_mut().map(|trace| trace.play(tick));
         for (short, long) in [(0, 1), (1, 0)] {
@@ -152,24 +133,21 @@ pub(super) fn compare(args: &ReplayArgs, other: &Path) -> Result<Report, Failure
         let (a, b) = if i == 0 { (words.1, words.0) } else { words };
         comparison.find(first.at.0 as f64 * 1e-6, What::Length, || ("records".to_owned(), a, b));
     }
-    drop(bar);
     let ended = [pair[0].finish()?, pair[1].finish()?];
     comparison.decisions(&pair[0].decisions.all, &pair[1].decisions.all);
     Ok(comparison.report(ended))
 }
 
-/// Refuses traces that have nothing to compare: other formats, leagues, hosts or case bases.
-fn comparable(file: &Path, other: &Path) -> Result<(), Failure> {
-    let header = |file: &Path| -> Result<(u32, RecordingHeader), Failure> {
-        if !begins(file)?.starts_with(TRACE) {
-            return Err(failed(file)(RecordedError::NoTrace));
+/// Refuses traces that have nothing to compare: other formats, leagues, hosts or case bases. Their league.
+pub fn comparable(file: &Path, other: &Path) -> Result<League, RecordingFailure> {
+    for file in [file, other] {
+        if !begins_as_trace(file)? {
+            return Err(in_file(file)(RecordedError::NoTrace));
         }
-        let reader = Reader::new(open(file)?).map_err(RecordedError::Trace).map_err(failed(file))?;
-        let header = RecordingHeader::from_json(reader.header());
-        Ok((reader.version, header.map_err(RecordedError::Header).map_err(failed(file))?))
-    };
-    let ((a_version, a), (b_version, b)) = (header(file)?, header(other)?);
-    let unlike = |what: String| Err(failed(other)(RecordedError::Unlike(what)));
+    }
+    let (one, two) = (TraceFile::open(file)?, TraceFile::open(other)?);
+    let ((a_version, a), (b_version, b)) = ((one.version(), &one.header), (two.version(), &two.header));
+    let unlike = |what: String| Err(in_file(other)(RecordedError::Unlike(what)));
     if a_version != b_version {
         return unlike(format!(
             "a trace of format {b_version}, the other is of format {a_version}: record both with the same program"
@@ -181,8 +159,8 @@ fn comparable(file: &Path, other: &Path) -> Result<(), Failure> {
     let hosts = |header: &RecordingHeader| {
         header.hosts.iter().map(|host| host.colour.clone()).collect::<Vec<_>>().join(", ")
     };
-    if hosts(&a) != hosts(&b) {
-        return unlike(format!("it has the hosts {}, the other has {}", hosts(&b), hosts(&a)));
+    if hosts(a) != hosts(b) {
+        return unlike(format!("it has the hosts {}, the other has {}", hosts(b), hosts(a)));
     }
     for (a, b) in a.hosts.iter().zip(&b.hosts) {
         if let (Some(a), Some(b), colour) = (&a.cases, &b.cases, &a.colour)
@@ -193,14 +171,14 @@ fn comparable(file: &Path, other: &Path) -> Result<(), Failure> {
             ));
         }
     }
-    Ok(())
+    Ok(one.league)
 }
 
 /// Orders and positions after a tick.
 fn compare_hosts(tick: u64, pair: &[Playing<'_>; 2], comparison: &mut Comparison, colours: &[Colour]) {
     let now = Instant((tick + 1) * TICK_US);
     let at_s = now.0 as f64 * 1e-6;
-    let [left, right] = [0, 1].map(|i| all(&pair[i].recheck));
+    let [left, right] = [0, 1].map(|i| hosts_of(&pair[i].recheck));
     if let (Some(a), Some(b)) = (left.first(), right.first()) {
         let (a, b) = (a.tracker().world(now), b.tracker().world(now));
         let unlike = unlike::worlds(&a, &b);

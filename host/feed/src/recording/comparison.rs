@@ -81,7 +81,7 @@ pub(super) struct Comparison {
 
 /// The result, as text and as JSON.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub struct Report {
     kind: &'static str,
     files: [Ended; 2],
     same: bool,
@@ -98,7 +98,7 @@ pub(super) struct Report {
     settings: Vec<Setting>,
 }
 
-/// What differs between two headers; programs and seeds are settings too.
+/// Differences between two headers; programs and seeds are settings too.
 pub(super) fn settings(a: &RecordingHeader, b: &RecordingHeader) -> Vec<Setting> {
     let value = |header| serde_json::to_value(header).unwrap_or_default();
     let mut found = Vec::new();
@@ -262,16 +262,18 @@ impl Comparison {
 }
 
 impl Report {
-    pub(super) fn same(&self) -> bool {
+    /// True if nothing differs.
+    pub fn same(&self) -> bool {
         self.same
     }
 
-    /// Which file is damaged, the first one if both are.
-    pub(super) fn damaged(&self) -> Option<usize> {
+    /// Index of the damaged file, of the first one if both are.
+    pub fn damaged(&self) -> Option<usize> {
         self.files.iter().position(|file| file.damage.is_some())
     }
 
-    pub(super) fn damage(&self, which: usize) -> String {
+    /// Place where that file is cut or damaged; empty where it is whole.
+    pub fn damage(&self, which: usize) -> String {
         self.files.get(which).and_then(|file| file.damage.clone()).unwrap_or_default()
     }
 
@@ -280,7 +282,8 @@ impl Report {
         self.first.as_ref()
     }
 
-    pub(super) fn text(&self) -> String {
+    /// Lines for the operator.
+    pub fn text(&self) -> String {
         let mut out = String::new();
         for (name, Ended { file, span_s: (first, last), damage }) in ["A", "B"].into_iter().zip(&self.files) {
             let _ = writeln!(out, "{name}: {}, from {first:.3} to {last:.3} s", printable(file));

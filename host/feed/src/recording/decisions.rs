@@ -7,14 +7,15 @@ use arena::CaseNames;
 use arena::cases::{LibraryHandle, problem::parse};
 use arena::game::TICK_US;
 use arena::ledger::{CaseTable, MatchLedger};
+use casebase::Problem;
 use host::Host;
 use page::DecisionNote;
 use protocol::{CaseId, Instant, RobotId};
 use rules::Colour;
 use serde::Serialize;
 
-use crate::cases::problem_line;
-use crate::live::{Names, TeamCycles, reported};
+use crate::cycles::{TeamCycles, reported};
+use crate::names::Names;
 
 /// A report may come after this many newer decisions of both teams: teams decide at most every tick or so,
 /// and a report takes 0.1 s.
@@ -22,18 +23,20 @@ const LATE_MAX: usize = 20;
 
 /// A decision of a team's coordinator.
 #[derive(Debug, Serialize)]
-pub(super) struct Decision {
+pub struct Decision {
     at_s: f64,
-    pub(super) team: &'static str,
+    /// The coordinator's team, "blue" or "yellow".
+    pub team: &'static str,
     /// `region/name` of the case that is played; none where no case is.
     case: Option<String>,
     #[serde(flatten)]
-    pub(super) note: DecisionNote,
+    /// The decision itself.
+    pub note: DecisionNote,
 }
 
 impl Decision {
     /// The problem as `cases retrieve` reads it; none where the coordinator knew of no ball.
-    pub(super) fn problem_line(&self) -> Option<String> {
+    pub fn problem_line(&self) -> Option<String> {
         let mut problem = parse(&self.note.problem.as_ref()?.to_string()).ok()?;
         // As the robots had them; an object of JSON has an order of its own.
         problem.teammates.sort_unstable_by_key(|(id, _)| *id);
@@ -42,19 +45,20 @@ impl Decision {
 }
 
 /// Follows the hosts of a trace.
-pub(super) struct Decisions {
+pub struct Decisions {
     names: Names,
     case_names: CaseNames,
     ledger: MatchLedger,
     cycles: [TeamCycles; 2],
     /// Number of the tick that is being fed.
     tick: u64,
-    pub(super) all: Vec<Decision>,
+    /// Every decision so far, in the order of time.
+    pub all: Vec<Decision>,
 }
 
 impl Decisions {
     /// Names cases as the library does.
-    pub(super) fn new(library_handle: Option<&LibraryHandle>) -> Self {
+    pub fn new(library_handle: Option<&LibraryHandle>) -> Self {
         Self {
             names: Names::new(library_handle),
             case_names: CaseNames::new(library_handle.map_or_else(Vec::new, LibraryHandle::names)),
@@ -66,7 +70,7 @@ impl Decisions {
     }
 
     /// Before a record of `at` is fed: looks at the hosts where it begins another tick of 10 ms.
-    pub(super) fn look(&mut self, at: Instant, feed: &Host, hosts: &[&Host]) {
+    pub fn look(&mut self, at: Instant, feed: &Host, hosts: &[&Host]) {
         let tick = at.0 / TICK_US;
         if tick <= self.tick {
             return;
@@ -103,7 +107,7 @@ impl Decisions {
     }
 
     /// After the last record.
-    pub(super) fn finish(&mut self, feed: &Host, hosts: &[&Host]) {
+    pub fn finish(&mut self, feed: &Host, hosts: &[&Host]) {
         self.observe(((self.tick + 1) * TICK_US) as f64 * 1e-6, feed, hosts);
         for host in hosts {
             let us = host.settings().us;
@@ -114,15 +118,29 @@ impl Decisions {
         self.all.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
     }
 
-    /// What became of every play.
-    pub(super) fn ledger(&self) -> &MatchLedger {
+    /// Results of every play.
+    pub fn ledger(&self) -> &MatchLedger {
         &self.ledger
     }
 
-    /// What became of every case, by team.
-    pub(super) fn tables(&self, hosts: &[&Host]) -> BTreeMap<&'static str, CaseTable> {
+    /// Results of every case, by team.
+    pub fn tables(&self, hosts: &[&Host]) -> BTreeMap<&'static str, CaseTable> {
         self.ledger.tables(hosts, &self.case_names, true)
     }
+}
+
+/// A problem as `cases retrieve` reads it.
+pub fn problem_line(problem: &Problem) -> String {
+    let robots = problem.teammates.iter().map(|(id, at)| format!("\"{}\":[{},{}]", id.number(), at.x, at.y));
+    let opponents = problem.opponents.iter().map(|at| format!("[{},{}]", at.x, at.y));
+    format!(
+        "{{\"ball\":[{},{}],\"defending\":\"{}\",\"teammates\":{{{}}},\"opponents\":[{}]}}",
+        problem.ball.x,
+        problem.ball.y,
+        problem.defending.label(),
+        robots.collect::<Vec<_>>().join(","),
+        opponents.collect::<Vec<_>>().join(",")
+    )
 }
 
 fn decision(names: &CaseNames, us: Colour, at_s: f64, note: DecisionNote) -> Decision {

@@ -1,156 +1,171 @@
-//! `recorded`: why a recording cannot be read, or what it lacks, for `onetwo replay`.
+//! `failure`: why a recording cannot be read, or what it lacks, with the remedy.
 
 use std::fmt;
 use std::io;
+use std::path::{Path, PathBuf};
 
+use foreign::{printable, printable_path};
 use host::record::header::HeaderError;
 use host::record::trace::TraceError;
 use host::shell::key::KeyError;
 use ssl::log::LogError;
+use thiserror::Error;
 
-/// What is wrong with a recording, and how to fix it. The file is named by the failure.
+/// A file, and what is wrong with it.
 #[derive(Debug)]
-pub(crate) enum RecordedError {
-    /// It cannot be opened.
+pub struct RecordingFailure {
+    /// The file.
+    pub file: PathBuf,
+    /// Fault and remedy.
+    pub error: RecordedError,
+}
+
+/// Names the file of an error.
+pub fn in_file<E: Into<RecordedError>>(file: &Path) -> impl Fn(E) -> RecordingFailure {
+    move |error| RecordingFailure { file: file.to_owned(), error: error.into() }
+}
+
+impl fmt::Display for RecordingFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let file = printable_path(&self.file);
+        // The reason may quote the file's own text.
+        let reason = self.error.to_string();
+        let reason = printable(&reason);
+        // Some reasons name the file already.
+        if reason.starts_with(&file) { f.write_str(&reason) } else { write!(f, "{file}: {reason}") }
+    }
+}
+
+impl std::error::Error for RecordingFailure {}
+
+/// A fault of a recording, with the remedy.
+#[derive(Debug, Error)]
+pub enum RecordedError {
+    /// The file cannot be opened.
+    #[error("{0}")]
     Open(io::Error),
-    /// It is no trace.
-    Trace(TraceError),
-    /// The trace's header cannot be used.
-    Header(HeaderError),
-    /// It is no log.
-    Log(LogError),
+    /// No trace.
+    #[error(transparent)]
+    Trace(#[from] TraceError),
+    /// A trace whose header cannot be used.
+    #[error(transparent)]
+    Header(#[from] HeaderError),
+    /// No log.
+    #[error(transparent)]
+    Log(#[from] LogError),
     /// The team's key cannot be used.
-    Key(KeyError),
-    /// It was sealed with a key, and none is given.
+    #[error(transparent)]
+    Key(#[from] KeyError),
+    /// Frames sealed with a key, and none is given.
+    #[error("its frames were sealed with the team's key, which no recording holds: add --key-file FILE")]
     NoKey,
-    /// A log was to be checked as a trace.
+    /// A log that was to be checked as a trace.
+    #[error("no trace, and only a trace can be checked: give the NAME.trace that `--record NAME` wrote")]
     NoTrace,
-    /// A log was asked for the decisions of robots.
+    /// A log that was asked for the decisions of robots.
+    #[error(
+        "no trace, and only a trace holds what robots decided: give the NAME.trace that `--record NAME` wrote"
+    )]
     NoDecisions,
     /// The league of the log has no rules.
+    #[error("its league has no rules of the Small Size League")]
     NoRules,
     /// A log without a message.
+    #[error("holds no message")]
     Empty,
-    /// It is cut or damaged: where.
+    /// Place where the file is cut or damaged.
+    #[error("{0}")]
     Damaged(String),
-    /// The moment or event is not in it.
+    /// A moment or event that the recording lacks.
+    #[error("{0}")]
     NotThere(Missing),
-    /// It cannot be compared with another trace: why, and what to do.
+    /// Why it cannot be compared with another trace, and what to do.
+    #[error("{0}")]
     Unlike(String),
-    /// Its cases or its field are of another league than the library.
+    /// Cases or a field of another league than the library.
+    #[error(
+        "a recording of {recorded}, and the library is of {library}: give the library that its robots played, \
+         with --library DIR or --league NAME of `onetwo cases evidence` or `cases draft`; `cases learn` learns \
+         the four-legged league alone, from `onetwo trial --record`"
+    )]
     OtherLeague {
         /// The recording's league.
         recorded: String,
         /// The library's.
         library: String,
     },
-    /// Its robots had another case base than the library's.
+    /// Robots with another case base than the library's.
+    #[error(
+        "its robots had case base {recorded:08x}, the library is {library:08x}, so their cases have no names \
+         here: collect with `onetwo cases evidence --library DIR` of their library, and give what it writes"
+    )]
     OtherLibrary {
         /// Hash of theirs.
         recorded: u32,
         /// Hash of the library's.
         library: u32,
     },
-    /// It is nothing that evidence or plays are collected from.
+    /// Nothing that evidence or plays are collected from.
+    #[error(
+        "neither evidence.jsonl, nor what `trial --record` wrote, nor a trace (.trace), nor a league log (.log, \
+         .log.gz)"
+    )]
     NoRecording,
 }
 
 /// A moment that a recording lacks.
 #[derive(Debug)]
-pub(crate) struct Missing {
-    /// What was asked for.
-    pub(crate) asked: Asked,
-    /// Where it is cut or damaged, if it is.
-    pub(crate) damage: Option<String>,
+pub struct Missing {
+    /// A moment or event that was asked for.
+    pub asked: Asked,
+    /// Place where the recording is cut or damaged, if it is.
+    pub damage: Option<String>,
 }
 
-/// What was asked for.
-#[derive(Debug)]
-pub(crate) enum Asked {
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.damage {
+            None => write!(f, "{}", self.asked),
+            Some(damage) => write!(f, "{}; the file is damaged: {damage}", self.asked),
+        }
+    }
+}
+
+/// A moment or event that was asked for.
+#[derive(Debug, Error)]
+pub enum Asked {
     /// A time after a trace's end, and the end; s.
+    #[error("{0} s is after its end; it ends at {1:.3} s")]
     TraceTime(f64, f64),
     /// An event of a trace.
+    #[error("{met} `{name}` in it, not {nth}; it ends at {end:.3} s")]
     TraceEvent {
-        /// How many there are.
+        /// Number of such events in it.
         met: u32,
-        /// Its name.
+        /// Name of the event.
         name: String,
-        /// Which of them was asked for.
+        /// Number that was asked for.
         nth: u32,
-        /// Where the trace ends, s.
+        /// End of the trace, s.
         end: f64,
     },
     /// A time after a log's end, and the log's length; s.
+    #[error("it ends after {1:.3} s, before {0} s")]
     LogTime(f64, f64),
     /// An event of a log.
+    #[error("{met} `{name}` in it, not {nth}; it has: {}", listed(known))]
     LogEvent {
-        /// How many there are.
+        /// Number of such events in it.
         met: u32,
-        /// Its name.
+        /// Name of the event.
         name: String,
-        /// Which of them was asked for.
+        /// Number that was asked for.
         nth: u32,
-        /// The names of those that it has.
+        /// Names of the events that it has.
         known: Vec<String>,
     },
 }
 
-impl fmt::Display for Asked {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TraceTime(at, end) => write!(f, "{at} s is after its end; it ends at {end:.3} s"),
-            Self::TraceEvent { met, name, nth, end } => {
-                write!(f, "{met} `{name}` in it, not {nth}; it ends at {end:.3} s")
-            }
-            Self::LogTime(at, end) => write!(f, "it ends after {end:.3} s, before {at} s"),
-            Self::LogEvent { met, name, nth, known } => {
-                let known = if known.is_empty() { "no event".to_owned() } else { known.join(", ") };
-                write!(f, "{met} `{name}` in it, not {nth}; it has: {known}")
-            }
-        }
-    }
-}
-
-impl fmt::Display for RecordedError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Open(error) => write!(f, "{error}"),
-            Self::Trace(error) => write!(f, "{error}"),
-            Self::Header(error) => write!(f, "{error}"),
-            Self::Log(error) => write!(f, "{error}"),
-            Self::Key(error) => write!(f, "{error}"),
-            Self::NoKey => f.write_str(
-                "its frames were sealed with the team's key, which no recording holds: add --key-file FILE",
-            ),
-            Self::NoTrace => f.write_str(
-                "no trace, and only a trace can be checked: give the NAME.trace that `--record NAME` wrote",
-            ),
-            Self::NoDecisions => f.write_str(
-                "no trace, and only a trace holds what robots decided: give the NAME.trace that `--record NAME` wrote",
-            ),
-            Self::NoRules => f.write_str("its league has no rules of the Small Size League"),
-            Self::Empty => f.write_str("holds no message"),
-            Self::OtherLeague { recorded, library } => write!(
-                f,
-                "a recording of {recorded}, and the library is of {library}: give the library that its robots \
-                 played, with --library DIR or --league NAME of `onetwo cases evidence` or `cases draft`; `cases \
-                 learn` learns the four-legged league alone, from `onetwo trial --record`"
-            ),
-            Self::OtherLibrary { recorded, library } => write!(
-                f,
-                "its robots had case base {recorded:08x}, the library is {library:08x}, so their cases have no \
-                 names here: collect with `onetwo cases evidence --library DIR` of their library, and give what it \
-                 writes"
-            ),
-            Self::NoRecording => f.write_str(
-                "neither evidence.jsonl, nor what `trial --record` wrote, nor a trace (.trace), nor a league log \
-                 (.log, .log.gz)",
-            ),
-            Self::Damaged(place) | Self::Unlike(place) => f.write_str(place),
-            Self::NotThere(Missing { asked, damage: None }) => write!(f, "{asked}"),
-            Self::NotThere(Missing { asked, damage: Some(damage) }) => {
-                write!(f, "{asked}; the file is damaged: {damage}")
-            }
-        }
-    }
+fn listed(known: &[String]) -> String {
+    if known.is_empty() { "no event".to_owned() } else { known.join(", ") }
 }

@@ -5,15 +5,15 @@ use geometry::{Field, Point};
 use host::Host;
 use host::referee::Game;
 use host::world::World;
-use rules::{Colour, Phase};
+use rules::Colour;
 use serde::Serialize;
 
-use super::decided::Decided;
-use crate::live::description::spaced;
+use crate::decided::Decided;
+use crate::spaced;
 
 /// A moment, as text and as JSON.
 #[derive(Debug, Serialize)]
-pub(super) struct Moment {
+pub struct Moment {
     /// Seconds since the start of the file.
     at_s: f64,
     /// The event that it was requested by, if any.
@@ -22,7 +22,7 @@ pub(super) struct Moment {
     phase: String,
     stage: String,
     score: Score,
-    /// Where the ball is to be placed, m.
+    /// Place for the ball in a ball placement, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     placement: Option<[f32; 2]>,
     ball: Option<Ball>,
@@ -32,9 +32,11 @@ pub(super) struct Moment {
 
 /// Goals.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
-pub(super) struct Score {
-    pub(super) blue: u32,
-    pub(super) yellow: u32,
+pub struct Score {
+    /// Of team blue.
+    pub blue: u32,
+    /// Of team yellow.
+    pub yellow: u32,
 }
 
 #[derive(Debug, Serialize)]
@@ -65,7 +67,8 @@ struct Robot {
 }
 
 impl Moment {
-    pub(super) fn new(at_s: f64, event: Option<String>, world: &World, game: &Game, hosts: &[&Host]) -> Self {
+    /// The moment of `world` and `game`, with what `hosts` order their robots.
+    pub fn new(at_s: f64, event: Option<String>, world: &World, game: &Game, hosts: &[&Host]) -> Self {
         let team = |colour| -> Vec<Robot> {
             let robot = |robot: &host::world::Robot| Robot {
                 id: robot.who.id.number(),
@@ -80,7 +83,7 @@ impl Moment {
         Self {
             at_s,
             event,
-            phase: phase_description(game.phase),
+            phase: game.phase.to_string(),
             stage: spaced(&format!("{:?}", game.stage)),
             score: Score { blue: game.team(Colour::Blue).score, yellow: game.team(Colour::Yellow).score },
             placement: game.placement.map(metres),
@@ -96,7 +99,7 @@ impl Moment {
     }
 
     /// A few lines of text.
-    pub(super) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let mut lines = vec![match &self.event {
             Some(event) => format!("{:.3} s: {event}", self.at_s),
             None => format!("{:.3} s", self.at_s),
@@ -141,23 +144,12 @@ fn metres(point: Point<Field>) -> [f32; 2] {
     [point.x(), point.y()]
 }
 
-/// `FreeKick(Blue)` as `free kick, blue`.
-pub(crate) fn phase_description(phase: Phase<Colour>) -> String {
-    let debug = format!("{phase:?}");
-    match debug.split_once('(') {
-        Some((name, who)) => format!("{}, {}", spaced(name), spaced(who.trim_end_matches(')'))),
-        None => spaced(&debug),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn phases_and_stages_are_reported_in_words() {
-        assert_eq!(phase_description(Phase::FreeKick(Colour::Blue)), "free kick, blue");
-        assert_eq!(phase_description(Phase::Halt), "halt");
+    fn a_stage_is_written_in_words() {
         assert_eq!(spaced("ExtraFirstHalfPre"), "extra first half pre");
     }
 }

@@ -12,51 +12,51 @@ const NAME_LEN: usize = 60;
 
 /// Field and teams.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub(super) struct Sheet {
+pub struct Sheet {
     /// By vision; `None` if it never sent one.
-    pub(super) field: Option<FieldSize>,
+    pub field: Option<FieldSize>,
     /// By the referee; `None` if it was never received.
-    pub(super) teams: Option<Teams>,
+    pub teams: Option<Teams>,
 }
 
 /// The field's dimensions, as vision sends them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct FieldSize {
-    pub(super) length: f64,
-    pub(super) width: f64,
-    pub(super) goal_width: f64,
+pub struct FieldSize {
+    pub length: f64,
+    pub width: f64,
+    pub goal_width: f64,
     /// Along x, where it was sent.
-    pub(super) defence_depth: Option<f64>,
+    pub defence_depth: Option<f64>,
     /// Along y.
-    pub(super) defence_width: Option<f64>,
+    pub defence_width: Option<f64>,
     /// From the touch line to the wall.
-    pub(super) boundary: f64,
+    pub boundary: f64,
 }
 
 /// Both teams.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Teams {
-    pub(super) blue: Team,
-    pub(super) yellow: Team,
+pub struct Teams {
+    pub blue: Team,
+    pub yellow: Team,
 }
 
 /// A team as the referee reports it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Team {
-    pub(super) name: String,
-    pub(super) goalkeeper: u32,
+pub struct Team {
+    pub name: String,
+    pub goalkeeper: u32,
     /// Number given in total.
-    pub(super) yellow_cards: u32,
+    pub yellow_cards: u32,
     /// Still counting down.
-    pub(super) yellow_cards_active: usize,
-    pub(super) red_cards: u32,
+    pub yellow_cards_active: usize,
+    pub red_cards: u32,
     /// Robots it may have on the field; `None` where the referee does not send it.
-    pub(super) max_bots: Option<u32>,
+    pub max_bots: Option<u32>,
 }
 
 impl Sheet {
     /// A packet of the vision.
-    pub(super) fn vision(&mut self, packet: &WrapperPacket) {
+    pub fn vision(&mut self, packet: &WrapperPacket) {
         let Some(geometry) = &packet.geometry else { return };
         let (field, metres) = (&geometry.field, |mm: i32| f64::from(mm) * 1e-3);
         self.field = Some(FieldSize {
@@ -70,12 +70,12 @@ impl Sheet {
     }
 
     /// A packet of the referee.
-    pub(super) fn referee(&mut self, packet: &Referee) {
+    pub fn referee(&mut self, packet: &Referee) {
         self.teams = Some(Teams { blue: Team::of(&packet.blue), yellow: Team::of(&packet.yellow) });
     }
 
     /// As text, a line each.
-    pub(super) fn text(&self) -> Vec<String> {
+    pub fn text(&self) -> Vec<String> {
         let mut lines = Vec::new();
         if let Some(field) = &self.field {
             let FieldSize { length, width, goal_width, boundary, .. } = field;

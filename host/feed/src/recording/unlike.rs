@@ -13,14 +13,14 @@ use ssl::Message;
 use ssl::referee::Referee;
 use ssl::vision::WrapperPacket;
 
-use super::trace::label;
+use super::trace_file::record_label;
 
 /// Bytes of a packet that are printed from the first that differs on.
 const BYTES_SHOWN: usize = 8;
 /// Longest part of a value from a file that is printed, characters.
 const VALUE_LEN: usize = 200;
 
-/// What kind of thing differs.
+/// Kind of thing that differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum What {
@@ -79,13 +79,13 @@ pub(super) fn host_name(number: u8, colours: &[Colour]) -> String {
     )
 }
 
-/// What differs between two records in the same place: the field, and both values.
+/// Difference between two records in the same place: the field, and both values.
 pub(super) fn records(a: &Record, b: &Record, colours: &[Colour]) -> (String, String, String) {
     let both = |of: String, value: &dyn Fn(&Record) -> String| (of, value(a), value(b));
     if (a.kind, a.host) != (b.kind, b.host) {
         return both("kind".to_owned(), &|record| whole(record, colours));
     }
-    let of = format!("{} of {}", label(a.kind), host_name(a.host, colours));
+    let of = format!("{} of {}", record_label(a.kind), host_name(a.host, colours));
     if a.at != b.at {
         return both(format!("{of}, time"), &|record| format!("{:.6} s", record.at.0 as f64 * 1e-6));
     }
@@ -109,7 +109,7 @@ pub(super) fn records(a: &Record, b: &Record, colours: &[Colour]) -> (String, St
 
 /// A record as one line.
 pub(super) fn whole(record: &Record, colours: &[Colour]) -> String {
-    let (kind, host) = (label(record.kind), host_name(record.host, colours));
+    let (kind, host) = (record_label(record.kind), host_name(record.host, colours));
     format!("{kind} of {host} at {:.6} s, {} bytes", record.at.0 as f64 * 1e-6, record.bytes.len())
 }
 

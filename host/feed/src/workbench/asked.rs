@@ -18,7 +18,7 @@ pub(super) enum Asked {
     Open { name: String },
     /// A draft for a problem.
     Draft { problem: Value },
-    /// What is shown of a text.
+    /// The sheet of a text.
     Look { name: String, text: String },
     /// A change of a text, made in a symmetric copy.
     Edit { name: String, text: String, symmetry: SymmetryName, edit: Edit },
@@ -26,13 +26,13 @@ pub(super) enum Asked {
     Check { name: String, text: String },
     /// Rank and margins over a problem.
     Rank { name: String, text: String, problem: Value },
-    /// What it wins of the match's problems.
+    /// Problems of the match that it wins.
     Count { name: String, text: String },
-    /// What learning has found out about it.
+    /// Evidence and proposals of learning.
     Learned { name: String },
     /// The change of it with these words is refused, or is proposed again.
     Refuse { name: String, words: String, refused: bool },
-    /// What other settings of retrieval would change over the match's problems.
+    /// Changes by other settings of retrieval over the match's problems.
     Settings { values: BTreeMap<String, String> },
     /// Attempts in the simulator.
     Rehearse {
@@ -44,7 +44,7 @@ pub(super) enum Asked {
         opponents: Opposition,
         seed: u64,
     },
-    /// How they went so far.
+    /// Results so far.
     Rehearsal {},
     /// No further ones.
     Stop {},
@@ -62,7 +62,7 @@ pub(super) enum Asked {
 }
 
 impl Asked {
-    /// It changes something, or takes the machine for long.
+    /// True if it changes something, or takes the machine for long.
     pub(super) const fn needs_token(&self) -> bool {
         match self {
             Self::Rehearse { .. }
@@ -77,7 +77,7 @@ impl Asked {
     }
 }
 
-/// Which tries of a skill are played.
+/// Tries of a skill that are to be played.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TriesPlan {

@@ -27,14 +27,14 @@ impl Problems {
     }
 }
 
-/// What a case wins over a match's problems.
+/// Problems of a match that a case wins.
 #[derive(Debug, PartialEq, Eq, Serialize)]
 pub(super) struct CaseCount {
     /// Problems that were counted.
     problems: usize,
     /// Of them with a case, before and with it.
     answered: [usize; 2],
-    /// How often it is retrieved, before and with its changes.
+    /// Number of problems that it is retrieved for, before and with its changes.
     wins: [usize; 2],
     /// From which cases it takes how many, the most first; null is no case.
     takes: Vec<(Option<String>, usize)>,
@@ -42,7 +42,7 @@ pub(super) struct CaseCount {
     gives: Vec<(Option<String>, usize)>,
 }
 
-/// What the case `name` wins where `after` holds it as it is edited, and `before` as it is on disk.
+/// Problems that the case `name` wins where `after` holds it as it is edited, and `before` as it is on disk.
 pub(super) fn wins(
     problems: &Problems,
     before: &Library,
@@ -69,7 +69,7 @@ pub(super) fn wins(
     }
 }
 
-/// What other settings change over a match's problems.
+/// Changes by other settings over a match's problems.
 #[derive(Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Changes {
     /// Problems that were counted.
@@ -82,7 +82,7 @@ pub(super) struct Changes {
     cases: Vec<(Option<String>, [usize; 2])>,
 }
 
-/// What `then` would change.
+/// Changes that `then` would make.
 pub(super) fn changes(
     problems: &Problems,
     library: &Library,

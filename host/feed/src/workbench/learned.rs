@@ -14,12 +14,12 @@ use study::learning::{
 /// Longest file that is read, bytes.
 const LEN_MAX: u64 = 1 << 28;
 
-/// What is known of a case. The files lie where `cases learn --out DIR` puts them: beside the directory of
+/// Evidence and proposals of a case. The files lie where `cases learn --out DIR` puts them: beside the directory of
 /// the league, or in it.
 pub(super) fn of_case(library: Option<&Path>, files: &Files, case: &str) -> Result<Value, String> {
     let Some(directory) = library else { return Err(super::NO_DIRECTORY.to_owned()) };
     let evidence = found(directory, "evidence.jsonl");
-    let report = found(directory, REPORT);
+    let report = found(directory, REPORT_FILE);
     if evidence.is_none() && report.is_none() {
         let hint =
             "open a directory that `onetwo cases learn --out` has written, or copy both files beside it";
@@ -39,7 +39,7 @@ pub(super) fn of_case(library: Option<&Path>, files: &Files, case: &str) -> Resu
 }
 
 /// The changes that the author of the library in `directory` has refused.
-pub(crate) fn refusals(directory: &Path) -> Result<BTreeSet<Edit>, String> {
+pub fn refusals(directory: &Path) -> Result<BTreeSet<Edit>, String> {
     found(directory, REFUSALS).map_or_else(
         || Ok(BTreeSet::new()),
         |path| read_refusals(&read(&path)?).map_err(|what| unreadable(&path, &what)),
@@ -50,8 +50,8 @@ pub(crate) fn refusals(directory: &Path) -> Result<BTreeSet<Edit>, String> {
 /// beside the report; it is replaced whole.
 pub(super) fn refuse(library: Option<&Path>, case: &str, words: &str, refuses: bool) -> Result<(), String> {
     let directory = library.ok_or(super::NO_DIRECTORY)?;
-    let report =
-        found(directory, REPORT).ok_or_else(|| format!("there is no {REPORT} beside the library"))?;
+    let report = found(directory, REPORT_FILE)
+        .ok_or_else(|| format!("there is no {REPORT_FILE} beside the library"))?;
     let edit =
         edit_in(&read(&report)?, case, words).map_err(|error| unreadable(&report, &error.to_string()))?;
     let edit = edit.ok_or("the report has no such change: look again at what learning has found")?;
@@ -68,7 +68,7 @@ pub(super) fn refuse(library: Option<&Path>, case: &str, words: &str, refuses: b
 }
 
 /// Name of the report.
-const REPORT: &str = "report.json";
+const REPORT_FILE: &str = "report.json";
 
 fn found(directory: &Path, name: &str) -> Option<PathBuf> {
     let places = [Some(directory), directory.parent()];

@@ -2,7 +2,7 @@
 //! simulator and checks say of it. JSON in, JSON out.
 //!
 //! The draft is the viewer's: it comes with every request, so that several viewers can each edit their own.
-//! What is kept here is the library, and one rehearsal.
+//! Kept here: the library, and one rehearsal.
 
 mod asked;
 mod count;
@@ -31,11 +31,11 @@ use count::Problems;
 use rehearsal::{Rehearsal, RehearsalOrder};
 use skill_tests::SkillTests;
 
-pub(crate) use learned::refusals;
-pub(crate) use shared_library::SharedLibrary;
+pub use learned::refusals;
+pub use shared_library::SharedLibrary;
 
 /// Problems that are drawn to find out whether a case is ever retrieved, as by `cases check`.
-const DRAWN: u64 = 20_000;
+const DRAWN_PROBLEMS: u64 = 20_000;
 
 /// The workbench of a page.
 pub(crate) struct CaseWorkbench {
@@ -48,6 +48,7 @@ pub(crate) struct CaseWorkbench {
 }
 
 impl CaseWorkbench {
+    /// A workbench over `library`, whose cases are retrieved with these settings.
     pub(crate) fn new(library: SharedLibrary, settings: RetrievalSettings) -> Self {
         Self {
             library,
@@ -241,7 +242,7 @@ impl CaseWorkbench {
         if let Ok(library) = self.library_with(name, text) {
             let drawn = library.survey().map_err(|error| error.to_string())?;
             let sampler = library.sampler(1);
-            let counters = drawn.over((0..DRAWN).map(|number| (number, sampler.problem(number))));
+            let counters = drawn.over((0..DRAWN_PROBLEMS).map(|number| (number, sampler.problem(number))));
             let own = |finding: &Finding| case_name(&finding.file) == name;
             let never = never_retrieved(&library, &counters);
             sheet.findings.extend(never.iter().filter(|f| own(f)).map(FindingNote::of));
@@ -288,7 +289,7 @@ fn read(problem: &Value) -> Result<casebase::Problem, String> {
 }
 
 fn named(name: &str) -> Result<(), String> {
-    if is_case_name(name) { Ok(()) } else { Err(NAME.to_owned()) }
+    if is_case_name(name) { Ok(()) } else { Err(NAME_FORM.to_owned()) }
 }
 
 /// The first of the findings that refuse a library.
@@ -303,7 +304,7 @@ fn refused(findings: &[Finding]) -> String {
     if count > 1 { format!("{first} (and {} more)", count - 1) } else { first }
 }
 
-const NAME: &str = "a case is named region/name, both of letters, digits, - and _";
+const NAME_FORM: &str = "a case is named region/name, both of letters, digits, - and _";
 const NO_DIRECTORY: &str = "the cases of this program are built in: to save, start it with --library DIR, a copy of a league's directory";
 const NO_REHEARSAL: &str = "nothing was rehearsed yet";
 const NO_TOKEN: &str = "this page is open to the network: to rehearse, to try skills and to save, open it by the address with ?token=";

@@ -13,9 +13,9 @@ use page::milli;
 use serde_json::{Value, json};
 
 /// Attempts that are offered to be watched.
-const SAMPLES: usize = 3;
+const SAMPLES_MAX: usize = 3;
 
-/// What is rehearsed.
+/// The case that is rehearsed, and how often.
 pub(super) struct RehearsalOrder {
     pub(super) name: String,
     pub(super) trials: u32,
@@ -102,7 +102,7 @@ impl Rehearsal {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// How they went so far.
+    /// Results so far.
     pub(super) fn report(&self) -> Value {
         let course = self.course();
         let attempts: Vec<_> = course.attempts.iter().map(|(attempt, _)| attempt.clone()).collect();
@@ -153,12 +153,12 @@ fn samples(attempts: &[Attempt]) -> Vec<Value> {
     let first = |number: &usize| !results[..*number].contains(&results[*number]);
     let (mut chosen, others): (Vec<usize>, Vec<usize>) = (0..attempts.len()).partition(first);
     chosen.extend(others);
-    chosen.truncate(SAMPLES);
+    chosen.truncate(SAMPLES_MAX);
     chosen.sort_unstable();
     chosen.into_iter().map(|number| json!({ "number": number, "result": results[number] })).collect()
 }
 
-/// How an attempt went.
+/// Course of an attempt.
 fn told(attempt: &Attempt) -> String {
     match (&attempt.retrieved, attempt.end) {
         (Retrieved::Own, _) if attempt.completed() => {

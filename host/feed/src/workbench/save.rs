@@ -11,7 +11,7 @@ use case_tools::workbench::{Sheet, is_case_name};
 /// Writes the text of a sheet; `over` is the text that it replaces.
 pub(super) fn save(directory: &Path, sheet: &Sheet, over: Option<&str>) -> Result<(), String> {
     if !is_case_name(&sheet.name) {
-        return Err(super::NAME.to_owned());
+        return Err(super::NAME_FORM.to_owned());
     }
     let error = Severity::Error.to_string();
     if let Some(finding) = sheet.findings.iter().find(|finding| finding.severity == error) {
@@ -20,7 +20,7 @@ pub(super) fn save(directory: &Path, sheet: &Sheet, over: Option<&str>) -> Resul
     }
     let failed = |error: std::io::Error| format!("{}.toml cannot be written: {error}", sheet.name);
     let file = directory.join(format!("{}.toml", sheet.name));
-    let region = file.parent().ok_or_else(|| super::NAME.to_owned())?;
+    let region = file.parent().ok_or_else(|| super::NAME_FORM.to_owned())?;
     fs::create_dir_all(region).map_err(failed)?;
     // A region may be a link to elsewhere.
     let inside =
@@ -54,5 +54,5 @@ pub(super) fn save(directory: &Path, sheet: &Sheet, over: Option<&str>) -> Resul
     })
 }
 
-/// How the refusal to save over a case begins.
+/// Start of the refusal to save over a case.
 const EXISTS: &str = "there is a case of that name";

@@ -4,40 +4,39 @@
 use std::path::Path;
 use std::sync::{Arc, PoisonError, RwLock};
 
-use arena::cases::LibraryHandle;
+use arena::cases::{LibraryError, LibraryHandle};
 use case_tools::Files;
-
-use crate::Failure;
 
 /// A library that is read again for every match.
 #[derive(Clone, Debug)]
-pub(crate) struct SharedLibrary(Arc<RwLock<Option<LibraryHandle>>>);
+pub struct SharedLibrary(Arc<RwLock<Option<LibraryHandle>>>);
 
 impl SharedLibrary {
-    pub(crate) fn new(library_handle: Option<LibraryHandle>) -> Self {
+    /// A library that the next match plays; none where no cases are played.
+    pub fn new(library_handle: Option<LibraryHandle>) -> Self {
         Self(Arc::new(RwLock::new(library_handle)))
     }
 
-    /// That of the match that is played now; none where no cases are played.
-    pub(crate) fn now(&self) -> Option<LibraryHandle> {
+    /// Library of the match that is played now; none where no cases are played.
+    pub fn now(&self) -> Option<LibraryHandle> {
         *self.0.read().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Reads its directory again, if it has one; as it was where that is refused.
-    pub(crate) fn read_again(&self) -> Result<(), Failure> {
+    pub fn read_again(&self) -> Result<(), LibraryError> {
         if let Some(directory) = self.directory() {
-            let read = crate::library::read(directory)?;
+            let read = LibraryHandle::read(directory, |_, _| {})?;
             *self.0.write().unwrap_or_else(PoisonError::into_inner) = Some(read);
         }
         Ok(())
     }
 
     /// The directory that it was read from.
-    pub(crate) fn directory(&self) -> Option<&'static Path> {
+    pub fn directory(&self) -> Option<&'static Path> {
         self.now()?.directory()
     }
 
-    /// Its files as they are now.
+    /// The files as they are now.
     pub(super) fn files(&self) -> Result<Files, String> {
         let library_handle = self.now().ok_or("no cases are played here")?;
         library_handle.files().map_err(|findings| super::refused(&findings))

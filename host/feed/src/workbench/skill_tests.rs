@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use study::skills::{Skill, SkillPlan, TryResult, rows};
 
 /// Failed tries that are told.
-const FAILURES: usize = 10;
+const FAILURES_MAX: usize = 10;
 
 /// Tries that are being played, or were.
 pub(super) struct SkillTests {
@@ -36,7 +36,7 @@ impl Drop for End<'_> {
 }
 
 impl SkillTests {
-    /// What can be tried, and in which worlds.
+    /// Skills that can be tried, and the worlds to try them in.
     pub(super) fn choices() -> Value {
         json!({ "skills": Skill::ALL.map(Skill::label), "worlds": WorldChoice::names().collect::<Vec<_>>() })
     }
@@ -75,7 +75,7 @@ impl SkillTests {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// How they went so far.
+    /// Results so far.
     pub(super) fn report(&self) -> Value {
         let course = self.course();
         let failed = course.results.iter().filter_map(|result| {
@@ -87,7 +87,7 @@ impl SkillTests {
             "over": course.over,
             "error": course.error,
             "row": rows(&self.plan, &course.results).first(),
-            "failed": failed.take(FAILURES).collect::<Vec<_>>(),
+            "failed": failed.take(FAILURES_MAX).collect::<Vec<_>>(),
         })
     }
 }

@@ -34,7 +34,7 @@ impl Directory {
     }
 
     fn workbench(&self) -> CaseWorkbench {
-        let library = SharedLibrary::new(Some(crate::library::read(&self.library()).unwrap()));
+        let library = SharedLibrary::new(Some(LibraryHandle::read(&self.library(), |_, _| {}).unwrap()));
         CaseWorkbench::new(library, RetrievalSettings::default())
     }
 }
@@ -139,7 +139,7 @@ fn a_region_that_is_a_link_to_elsewhere_is_not_written_to() {
 }
 
 #[test]
-fn what_writes_or_takes_the_machine_needs_the_token_and_a_real_field_has_no_rehearsals() {
+fn writing_and_rehearsing_need_the_token_and_a_real_field_has_none() {
     let directory = Directory::new("token");
     let workbench = directory.workbench();
     let text = draft(&workbench);
@@ -172,7 +172,7 @@ fn what_writes_or_takes_the_machine_needs_the_token_and_a_real_field_has_no_rehe
 }
 
 #[test]
-fn tries_of_a_skill_are_counted_as_the_command_counts_them_and_what_is_none_is_refused() {
+fn tries_of_a_skill_are_counted_as_by_the_command_and_others_are_refused() {
     let directory = Directory::new("tries");
     let workbench = directory.workbench();
     let begin = |skill: &str, world: &str, tries: u32| {

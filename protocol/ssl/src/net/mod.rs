@@ -1,20 +1,22 @@
 //! `net`: sockets of the league's network, for multicast and unicast, opened as the league's own programs do.
 //!
 //! [`Receiver`] receives a multicast group beside other programs on the same machine, [`Sender`] sends to
-//! one, [`Port`] is a UDP port of one's own (simulators, robots), [`Connection`] a dialogue with the game
-//! controller. Every error names the fix.
+//! one, [`Port`] is a UDP port of one's own (simulators, robots); [`NetReceiver`] and [`NetSender`] take either
+//! kind of address. [`Connection`] is a dialogue with the game controller. Every error names the fix.
 //!
 //! **No async runtime.** A receive waits for at most the given time and allocates no memory, so one thread a
 //! socket, or one loop over all with a wait of zero, is simple and enough: a match has four to eight sockets
 //! and under a thousand datagrams a second. A program with a runtime calls these from a blocking task.
 
 mod connection;
+mod endpoint;
 mod error;
 mod interfaces;
 mod probe;
 mod sockets;
 
 pub use connection::Connection;
+pub use endpoint::{NetReceiver, NetSender};
 pub use error::NetError;
 pub use interfaces::{Interface, Interfaces, interfaces};
 pub use probe::{LoopbackProbe, probe_loopback, route};

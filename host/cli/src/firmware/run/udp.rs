@@ -22,32 +22,32 @@ use rules::Colour;
 use ssl::net::addresses;
 use virtual_robot::{AccessPoint, Bodies};
 
-use super::{RunArgs, at, build, check, failed, in_option, qemu_arguments};
+use super::super::failure::FirmwareError;
+use super::{RunArgs, at, build, check, in_option, qemu_arguments};
 use crate::Failure;
-use crate::failure::FirmwareError;
 use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 /// This machine, as an image sees it (QEMU's documentation of `-netdev user`).
-const PC: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 2);
+const PC_ADDRESS: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 2);
 /// An image, as it is seen by itself.
-const ROBOT: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 15);
+const ROBOT_ADDRESS: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 15);
 /// Port of an image's radio; that of its body is the next.
 const RADIO_PORT: u16 = 10_400;
 /// The emulators are looked after this often.
-const LOOK: Duration = Duration::from_millis(100);
+const CHECK_EVERY: Duration = Duration::from_millis(100);
 /// A port to which nobody listens: `discard` (RFC 863).
-const NOBODY: u16 = 9;
+const DISCARD_PORT: u16 = 9;
 
 /// Runs them until they are ended.
 pub(super) fn run(address: SocketAddr, args: &RunArgs) -> Result<(), Failure> {
     let robots: Vec<(&Path, Provision)> =
         args.page.iter().map(|file| Ok((file.as_path(), check(file)?))).collect::<Result<_, Failure>>()?;
-    let team = one_team(&robots).map_err(|what| failed(FirmwareError::Team(what)))?;
+    let team = one_team(&robots).map_err(FirmwareError::Team)?;
     let simulator = args.simulator.as_deref().map(|text| simulator(text, team)).transpose()?;
-    let qemu = ensure_qemu(Install::ForUser).map_err(failed)?;
+    let qemu = ensure_qemu(Install::ForUser)?;
     let image = build(Program::Udp)?;
-    let socket = |what: String| move |error| failed(FirmwareError::Socket(what, error));
+    let socket = |what: String| move |error| FirmwareError::Socket(what, error);
     let point = AccessPoint::open(address).map_err(socket(format!("robots' radio at {address}")))?;
     let ids: Vec<_> = robots.iter().map(|(_, who)| who.robot).collect();
     let bodies = simulator
@@ -61,12 +61,12 @@ pub(super) fn run(address: SocketAddr, args: &RunArgs) -> Result<(), Failure> {
     for (file, who) in &robots {
         let body = bodies.iter().flat_map(Bodies::addresses).find(|(id, _)| *id == who.robot);
         let network = NetworkPage {
-            own: ROBOT,
+            own: ROBOT_ADDRESS,
             prefix: 24,
-            gateway: PC,
+            gateway: PC_ADDRESS,
             port: RADIO_PORT,
-            radio: SocketAddrV4::new(PC, point.for_robots().port()),
-            body: SocketAddrV4::new(PC, body.map_or(NOBODY, |(_, address)| address.port())),
+            radio: SocketAddrV4::new(PC_ADDRESS, point.for_robots().port()),
+            body: SocketAddrV4::new(PC_ADDRESS, body.map_or(DISCARD_PORT, |(_, address)| address.port())),
         };
         let journal = args.journal.as_deref().map(|directory| prepare(directory, who)).transpose()?;
         let mut arguments = qemu_arguments(&image, Some(file), "null");
@@ -75,14 +75,13 @@ pub(super) fn run(address: SocketAddr, args: &RunArgs) -> Result<(), Failure> {
             .args(arguments)
             .stdin(Stdio::null())
             .spawn()
-            .map_err(FirmwareError::Emulator)
-            .map_err(failed)?;
+            .map_err(FirmwareError::Emulator)?;
         team.0.push((who.robot.number(), child));
     }
     let end = args.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
     while !stopped_by_hand().load(Ordering::Relaxed) && end.is_none_or(|end| Instant::now() < end) {
         team.look()?;
-        thread::sleep(LOOK);
+        thread::sleep(CHECK_EVERY);
     }
     let counts = point.counts();
     note!("radio  {} frames of the host, {} of robots passed on", counts.from_host, counts.from_robots);
@@ -96,9 +95,9 @@ impl Team {
     /// An error as soon as one has ended.
     fn look(&mut self) -> Result<(), Failure> {
         for (robot, child) in &mut self.0 {
-            if let Some(status) = child.try_wait().map_err(FirmwareError::Emulator).map_err(failed)? {
+            if let Some(status) = child.try_wait().map_err(FirmwareError::Emulator)? {
                 let what = format!("the emulator of robot {robot} ended ({status}); its output is above");
-                return Err(failed(FirmwareError::Team(what)));
+                return Err(FirmwareError::Team(what).into());
             }
         }
         Ok(())
@@ -149,7 +148,7 @@ fn simulator(text: &str, team: Option<Colour>) -> Result<SocketAddr, Failure> {
     let with_port = text.to_socket_addrs().or_else(|_| (text, port).to_socket_addrs());
     let found = with_port.ok().and_then(|mut found| found.next());
     let unknown = || format!("unknown host in --simulator {text}; give HOST or HOST:PORT");
-    found.ok_or_else(|| failed(FirmwareError::Team(unknown())))
+    found.ok_or_else(|| FirmwareError::Team(unknown()).into())
 }
 
 /// An empty journal for a robot: the memory of its board, as a file.
@@ -224,12 +223,12 @@ mod tests {
     #[test]
     fn the_network_s_page_is_loaded_as_its_bytes_stand() {
         let network = NetworkPage {
-            own: ROBOT,
+            own: ROBOT_ADDRESS,
             prefix: 24,
-            gateway: PC,
+            gateway: PC_ADDRESS,
             port: RADIO_PORT,
-            radio: SocketAddrV4::new(PC, 5),
-            body: SocketAddrV4::new(PC, NOBODY),
+            radio: SocketAddrV4::new(PC_ADDRESS, 5),
+            body: SocketAddrV4::new(PC_ADDRESS, DISCARD_PORT),
         };
         let arguments = network_arguments(&network, &who(3, 1), Some(Path::new("a,b")));
         // "1-2N", 10.0.2.15 as a number of eight bytes, little endian.

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::progress::{Event, Summary};
 
-/// How it is printed.
+/// Format of what is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     /// A line for each check, two for one that failed.
@@ -88,7 +88,7 @@ fn verdict(state: CheckState) -> &'static str {
     }
 }
 
-/// Its place in the list, from 1.
+/// Place of a check in the list, from 1.
 fn number(check: Check) -> usize {
     check.number().map_or(0, |number| number + 1)
 }

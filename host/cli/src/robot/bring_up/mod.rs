@@ -3,6 +3,7 @@
 //!
 //! [`progress`] reads the frames, [`lines`] writes what is printed; here are the link and its clock.
 
+mod failure;
 mod lines;
 mod progress;
 
@@ -14,6 +15,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use host::config::RobotLink;
 use host::radio::To;
+use host::run::{PublicKey, real_epoch};
 use host::shell::{Link, SerialLink, UdpLink, key};
 use protocol::frame::TeamKey;
 use protocol::host::{HostMessage, WorldPart};
@@ -22,11 +24,10 @@ use protocol::{RobotId, TeamId};
 use rules::Phase;
 
 use crate::Failure;
-use crate::control::real_epoch;
-use crate::failure::{BringUpError, NetworkError};
+use crate::args::parsers::{robot_number, seconds};
 use crate::output::{note, print_text};
-use crate::simulate::seconds;
 use crate::stop::{signal, stopped_by_hand};
+use failure::BringUpError;
 use lines::Format;
 use progress::Progress;
 
@@ -43,7 +44,7 @@ pub(crate) struct BringUpArgs {
     #[arg(long, value_name = "FILE")]
     key_file: PathBuf,
     /// The robot's number; by default the first that reports a check.
-    #[arg(long, value_name = "N", value_parser = robot)]
+    #[arg(long, value_name = "N", value_parser = robot_number)]
     robot: Option<RobotId>,
     /// A JSON object a line: each check when it begins and when it ends, then the counts.
     #[arg(long)]
@@ -58,19 +59,21 @@ const SNAPSHOT_EVERY: Duration = Duration::from_millis(10);
 
 /// Exit code 1 if a check failed.
 pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
-    let robots = RobotLink::parse(&args.robots).map_err(NetworkError::Config)?;
-    let read = key::read(&args.key_file).map_err(NetworkError::Key)?;
+    let robots = RobotLink::parse(&args.robots)?;
+    let read = key::read(&args.key_file)?;
     if let Some(warning) = &read.warning {
         note!("warning: {warning}");
     }
     if read.key == TeamKey::ZERO {
-        return Err(
-            NetworkError::PublicKey { link: args.robots.clone(), file: Some(args.key_file.clone()) }.into()
-        );
+        return Err(PublicKey { link: args.robots.clone(), file: Some(args.key_file.clone()) }.into());
     }
     let stopped = stopped_by_hand();
     let mut link = open(&robots)?;
-    let mut host = HostLink::new(TeamId(args.team), read.key, real_epoch());
+    let epoch = real_epoch();
+    if let Some(warning) = &epoch.warning {
+        note!("warning: {warning}");
+    }
+    let mut host = HostLink::new(TeamId(args.team), read.key, epoch.epoch);
     let mut progress = Progress::new(TeamId(args.team), &read.key, host.epoch(), args.robot);
     let format = if args.json { Format::Json } else { Format::Text };
     note!("waiting for a robot's checks over {}; Ctrl-C ends it", args.robots);
@@ -88,11 +91,11 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
             snapshot = snapshot.wrapping_add(1);
             if link.has_room() {
                 let now = protocol::Instant(began.elapsed().as_micros() as u64);
-                link.send(To::All, &host.seal(now, &empty(snapshot))).map_err(NetworkError::Link)?;
+                link.send(To::All, &host.seal(now, &empty(snapshot)))?;
             }
         }
         let wait = due.saturating_duration_since(Instant::now());
-        if let Some(packet) = link.receive(wait).map_err(NetworkError::Link)? {
+        if let Some(packet) = link.receive(wait)? {
             let taken = progress.take(&packet);
             if taken.is_report {
                 news = Instant::now();
@@ -121,10 +124,8 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
 
 fn open(robots: &RobotLink) -> Result<Box<dyn Link>, Failure> {
     Ok(match robots {
-        RobotLink::Udp(address) => Box::new(UdpLink::open(address).map_err(NetworkError::Link)?),
-        RobotLink::Serial { device, baud } => {
-            Box::new(SerialLink::open(device, *baud).map_err(NetworkError::Link)?)
-        }
+        RobotLink::Udp(address) => Box::new(UdpLink::open(address)?),
+        RobotLink::Serial { device, baud } => Box::new(SerialLink::open(device, *baud)?),
         RobotLink::Simulator(_) => return Err(BringUpError::Simulator.into()),
     })
 }
@@ -142,9 +143,4 @@ fn silent(progress: &Progress, seconds: f64, link: &dyn Link) -> BringUpError {
 fn empty(snapshot: u8) -> HostMessage {
     let (phase, robots) = (Phase::Halt, std::iter::empty().collect());
     HostMessage::World(WorldPart { snapshot, part: 0, parts: 1, phase, placement: None, ball: None, robots })
-}
-
-fn robot(text: &str) -> Result<RobotId, String> {
-    let wrong = || "expected a robot's number, 0 to 15".to_owned();
-    text.parse().ok().and_then(RobotId::new).ok_or_else(wrong)
 }

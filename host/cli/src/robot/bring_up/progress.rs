@@ -9,7 +9,7 @@ use protocol::bring_up::{BringUpReport, CHECKS, Check, CheckState, is_report, op
 use protocol::frame::{Frame, Refusal, Sender, Sessions, TeamKey, TeamKeys};
 use protocol::{RobotId, TeamId};
 
-/// What has changed.
+/// A change since the packet before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Event {
     /// The first report of a start of this robot.
@@ -18,7 +18,7 @@ pub(super) enum Event {
     Check { robot: RobotId, check: Check, state: CheckState },
 }
 
-/// What a packet was.
+/// Kind of a packet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Taken {
     /// A report of the robot that is followed, new or repeated.
@@ -34,7 +34,7 @@ pub(super) struct Summary {
     pub(super) failed: usize,
     /// Numbers from 1 of checks without a result.
     pub(super) open: Vec<usize>,
-    /// It has named this host's epoch: its reports are no recording.
+    /// The robot has named this host's epoch: its reports are no recording.
     pub(super) hears_us: bool,
 }
 

@@ -1,0 +1,135 @@
+//! `referee`: the referee beside a field on the network: the internal one, an external game controller with
+//! its services, or none.
+
+use std::time::Duration;
+
+use ssl::Message;
+use ssl::net::{NetSender, addresses};
+
+use super::controller::ExternalController;
+use super::{NetworkSettings, RefereeKind};
+use crate::small_size::referee::{InternalReferee, NoRules, RefereeSettings};
+use crate::small_size::{PhysicsEvent, World};
+
+/// Period of the referee, simulated ms: its detectors are tuned for it.
+pub(super) const REFEREE_EVERY_MS: u64 = 10;
+
+/// The referee source, and what it published.
+pub(super) struct Referee {
+    source: RefereeSource,
+    sender: NetSender,
+    events: Vec<PhysicsEvent>,
+    /// The step of the world at its last call.
+    looked: u64,
+    /// Time that the world has been advanced to, µs.
+    pub(super) advanced: u64,
+    /// Packets that were sent or received since the spectator last took them.
+    pub(super) packets: Vec<Vec<u8>>,
+}
+
+enum RefereeSource {
+    Internal(Box<InternalReferee>),
+    None,
+    External(Box<ExternalController>),
+}
+
+impl Referee {
+    pub(super) fn new(settings: &NetworkSettings) -> Result<Self, NoRules> {
+        let league = settings.server.league;
+        let external = |from| {
+            let (assistant, autoref) = (settings.assistant, settings.autoref.as_deref());
+            ExternalController::new(from, league, assistant, autoref)
+                .map(|controller| RefereeSource::External(Box::new(controller)))
+        };
+        let serves = settings.assistant || settings.autoref.is_some();
+        let source = match settings.referee {
+            RefereeKind::Internal => RefereeSource::Internal(internal(settings, settings.server.seed)?),
+            RefereeKind::None if serves => external(addresses::REFEREE.into())?,
+            RefereeKind::None => RefereeSource::None,
+            RefereeKind::Received(from) => external(from)?,
+        };
+        let sender = NetSender::new(settings.referee_to, settings.interface.as_deref());
+        Ok(Self { source, sender, events: Vec::new(), looked: 0, advanced: 0, packets: Vec::new() })
+    }
+
+    /// Another game starts; the internal referee starts again with it, an external game controller does not
+    /// know of it.
+    pub(super) fn restart(&mut self, settings: &NetworkSettings, seed: u64) -> Result<(), NoRules> {
+        match &mut self.source {
+            RefereeSource::Internal(referee) => *referee = internal(settings, seed)?,
+            RefereeSource::External(controller) => controller.restart()?,
+            RefereeSource::None => {}
+        }
+        self.events.clear();
+        self.looked = 0;
+        Ok(())
+    }
+
+    /// Lines that describe it, for the operator.
+    pub(super) fn lines(&self) -> Vec<String> {
+        match &self.source {
+            RefereeSource::Internal(_) => vec![format!("referee  internal, to {}", self.sender.to())],
+            RefereeSource::None => vec!["referee  none".to_owned()],
+            RefereeSource::External(controller) => controller.lines(),
+        }
+    }
+
+    pub(super) fn internal(&mut self) -> Option<&mut InternalReferee> {
+        match &mut self.source {
+            RefereeSource::Internal(referee) => Some(referee),
+            RefereeSource::None | RefereeSource::External(_) => None,
+        }
+    }
+
+    /// The state of the game, as text.
+    pub(super) fn state(&self) -> String {
+        match &self.source {
+            RefereeSource::Internal(referee) => referee.phase().to_string(),
+            RefereeSource::None => "no referee".to_owned(),
+            RefereeSource::External(controller) => controller.state(),
+        }
+    }
+
+    /// The referee observes the world, and the assistant's tasks are done.
+    pub(super) fn look(&mut self, world: &mut World, lines: &mut Vec<String>) {
+        world.take_events(&mut self.events);
+        if world.now() < self.looked + REFEREE_EVERY_MS {
+            return;
+        }
+        self.looked = world.now();
+        match &mut self.source {
+            RefereeSource::Internal(referee) => {
+                referee.look(world, &self.events);
+                while let Some(order) = referee.poll_order() {
+                    order.carry_out(world);
+                }
+                while let Some(packet) = referee.poll_packet() {
+                    let bytes = packet.encode_to_vec();
+                    lines.extend(self.sender.send(&bytes));
+                    self.packets.push(bytes);
+                }
+            }
+            RefereeSource::External(controller) => controller.look(world, &self.events, lines),
+            RefereeSource::None => {}
+        }
+        self.events.clear();
+    }
+
+    /// Receives an external game controller, if there is one.
+    pub(super) fn listen(&mut self, world: &World, running: Duration, lines: &mut Vec<String>) {
+        if let RefereeSource::External(controller) = &mut self.source {
+            controller.listen(world, running, &mut self.packets, lines);
+        }
+    }
+}
+
+/// The referee of our own.
+fn internal(settings: &NetworkSettings, seed: u64) -> Result<Box<InternalReferee>, NoRules> {
+    let referee = RefereeSettings {
+        epoch_us: settings.unix_us,
+        blue_on_positive_half: false,
+        max_robots: settings.robots,
+        ..RefereeSettings::new(settings.server.league)
+    };
+    InternalReferee::new(referee, seed).map(Box::new)
+}

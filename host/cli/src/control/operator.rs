@@ -1,0 +1,197 @@
+//! `operator`: what the operator of `onetwo control` sees of the host, on the terminal and on the page, and
+//! what is asked for on the page: HALT, and where it is allowed changes of parameters and tests of kickers.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use arena::cases::LibraryHandle;
+use feed::{
+    CaseExplanations, Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, change_of, test_of, tick,
+};
+use host::Host;
+use host::config::TeamConfig;
+use host::run::{Operator, Request};
+use page::{MatchEvent, Page, Powers, UserRequest};
+
+use super::terminal::Terminal;
+use crate::args::page::PageArgs;
+use crate::output::{note, printable_path, program_log};
+
+/// What the operator's page is opened with.
+pub(super) struct PageSettings<'a> {
+    pub(super) args: &'a PageArgs,
+    /// The page may change parameters.
+    pub(super) live_parameters: bool,
+    pub(super) library: Option<LibraryHandle>,
+    pub(super) retrieval: casebase::RetrievalSettings,
+}
+
+/// A terminal, and a page beside it.
+pub(super) struct ControlOperator<'a> {
+    config: &'a TeamConfig,
+    /// The team's file, for the page.
+    file: Option<PathBuf>,
+    page_settings: Option<PageSettings<'a>>,
+    terminal: Option<Terminal>,
+    dashboard: Option<Dashboard>,
+}
+
+impl<'a> ControlOperator<'a> {
+    pub(super) fn new(
+        config: &'a TeamConfig,
+        file: Option<PathBuf>,
+        page_settings: Option<PageSettings<'a>>,
+    ) -> Self {
+        Self { config, file, page_settings, terminal: None, dashboard: None }
+    }
+}
+
+impl Operator for ControlOperator<'_> {
+    fn started(&mut self) {
+        let TeamConfig { name, colour, league, .. } = self.config;
+        note!(
+            "controlling {name}, {}, {}; Ctrl-C halts the robots and ends it",
+            colour.label(),
+            league.name()
+        );
+        let title = format!("{name}, {}", colour.label());
+        self.dashboard = self.page_settings.take().and_then(|settings| Dashboard::open(settings, title));
+        self.terminal = Some(Terminal::open());
+    }
+
+    fn line(&mut self, line: String) {
+        match &mut self.terminal {
+            Some(terminal) => terminal.line(line),
+            None => note!("{line}"),
+        }
+    }
+
+    fn status(&mut self, status: String) {
+        if let Some(terminal) = &self.terminal {
+            terminal.status(status);
+        }
+    }
+
+    fn vision(&mut self, bytes: &[u8]) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.composer.vision(bytes);
+        }
+    }
+
+    fn referee(&mut self, now: protocol::Instant, bytes: &[u8]) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.composer.referee(bytes, now.0 as f64 * 1e-6, false);
+        }
+    }
+
+    fn took(&mut self, time: Duration) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.took = (dashboard.took * 15 + time) / 16;
+        }
+    }
+
+    fn fault(&mut self, now: protocol::Instant, fault: String) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.page.push(MatchEvent::fault(now.0 as f64 * 1e-6, fault));
+        }
+    }
+
+    fn changed(&mut self) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.parameters.hasten();
+        }
+    }
+
+    fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) {
+        if let Some(dashboard) = &mut self.dashboard {
+            dashboard.look(now, host, alarms);
+            let name = self.file.as_deref().map(printable_path);
+            let file = Some((self.config, name.as_deref()));
+            dashboard.parameters.look(&[host], file, &dashboard.page);
+        }
+    }
+
+    fn next_request(&mut self) -> Option<Request> {
+        let page = &self.dashboard.as_ref()?.page;
+        loop {
+            return Some(match page.next_request()? {
+                UserRequest::Halt {} => Request::Halt,
+                UserRequest::Parameter { key, robot, value, .. } => {
+                    match change_of(&key, robot, value.as_ref()) {
+                        Ok(change) => Request::Change(change),
+                        Err(reason) => {
+                            page.refuse(reason);
+                            continue;
+                        }
+                    }
+                }
+                UserRequest::Kicks { robot, kicks, .. } => Request::Test(test_of(robot, kicks)),
+                UserRequest::Save {} => Request::Save,
+                // Requests for a simulation are refused when they are read.
+                _ => continue,
+            });
+        }
+    }
+
+    fn refuse(&mut self, reason: String) {
+        if let Some(dashboard) = &self.dashboard {
+            dashboard.page.refuse(reason);
+        }
+    }
+
+    fn ended(&mut self) {
+        if let Some(terminal) = self.terminal.take() {
+            terminal.close();
+        }
+    }
+}
+
+/// The page beside a real field, and what fills it.
+struct Dashboard {
+    page: Page,
+    composer: Composer,
+    ledger: LedgerFeed,
+    parameters: ParameterFeed,
+    drawn_at: Option<Instant>,
+    /// Time an input takes, as a sliding mean.
+    took: Duration,
+}
+
+impl Dashboard {
+    /// Opens the page. If it cannot be opened, the error is printed and the robots are controlled without it.
+    fn open(settings: PageSettings<'_>, title: String) -> Option<Self> {
+        let PageSettings { args, live_parameters, library, retrieval } = settings;
+        let powers = if live_parameters { Powers::Tune } else { Powers::Halt };
+        let page = args
+            .open(title, false, powers, CaseExplanations::new(library, retrieval))
+            .map_err(|error| note!("page     there is none: {error}"))
+            .ok()?;
+        Some(Self {
+            page,
+            composer: Composer::new(library.as_ref(), program_log()),
+            ledger: LedgerFeed::new(library.as_ref()),
+            parameters: ParameterFeed::default(),
+            drawn_at: None,
+            took: Duration::ZERO,
+        })
+    }
+
+    /// Sends the scene to the page if it is due.
+    fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) {
+        let every = Duration::from_secs_f64(SCENE_EVERY_S);
+        let t = now.0 as f64 * 1e-6;
+        self.ledger.look(t, host, &[host]);
+        if self.drawn_at.is_none_or(|drawn_at| drawn_at.elapsed() >= every) {
+            self.drawn_at = Some(Instant::now());
+            let gauges = vec![tick(self.took)];
+            let moment = Moment { t, now, feed: host, hosts: &[host], truth: None, referee: None, gauges };
+            let mut deferred_scene = self.composer.compose(moment);
+            deferred_scene.scene.alarms = alarms;
+            for match_event in self.composer.take_match_events() {
+                self.page.push(match_event);
+            }
+            self.page.show(deferred_scene);
+            self.ledger.send(t, &[host], false, &self.page);
+        }
+    }
+}

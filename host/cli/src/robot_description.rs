@@ -1,0 +1,173 @@
+//! `robot_description`: the description of a robot, `robot.toml`, that a command line names: read, checked,
+//! and compared with the one that this program is built for (docs/robots.md).
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use foreign::{excerpt, printable_path};
+use robots::{Chosen, Description, Finding, Unreadable, VARIABLE};
+use rules::RobotSpec;
+use thiserror::Error;
+
+use crate::output::note;
+
+/// Why a description cannot be used.
+#[derive(Debug, Error)]
+pub(crate) enum DescriptionError {
+    /// There is no such file.
+    #[error("{0}")]
+    Unreadable(Unreadable),
+    /// Findings, one a line.
+    #[error("{}", lines(.0))]
+    Faulty(Vec<Finding>),
+    /// This many files or more were refused; their findings are printed already.
+    #[error("{}", refused(*.0))]
+    Refused(usize),
+    /// Another robot than the one that this program is built for.
+    #[error(
+        "this program is built for the robot {built_for}; {} differs in {} keys ({}). Build it for that robot, in a \
+         clone of the project: {VARIABLE}={} cargo run --release -- …",
+        excerpt(asked, NAME_LEN),
+        keys.len(),
+        shown(keys),
+        excerpt(asked, NAME_LEN)
+    )]
+    OtherRobot {
+        /// The description that was given.
+        asked: String,
+        /// Name of the robot that this program is built for.
+        built_for: &'static str,
+        /// Keys whose values differ.
+        keys: Vec<&'static str>,
+    },
+    /// A built-in description cannot be changed.
+    #[error(
+        "{name} comes with the program; keep a copy of it and change that: onetwo robot show {0} --text > FILE",
+        name = excerpt(.0, NAME_LEN)
+    )]
+    BuiltIn(String),
+    /// A file of measurements cannot be read.
+    #[error("{}: {what}", printable_path(file))]
+    Measurements {
+        /// The file.
+        file: PathBuf,
+        /// Fault, with the line and the remedy.
+        what: String,
+    },
+    /// The measurements give no value.
+    #[error("{key} cannot be fitted: {what}")]
+    NoFit {
+        /// The key that was to be fitted.
+        key: &'static str,
+        /// Missing measurements, and the remedy.
+        what: String,
+    },
+    /// The file cannot be written.
+    #[error("cannot write {}: {error}", printable_path(.0), error = .1)]
+    Write(PathBuf, io::Error),
+}
+
+fn lines(findings: &[Finding]) -> String {
+    findings.iter().map(Finding::to_string).collect::<Vec<_>>().join("\n")
+}
+
+fn refused(descriptions: usize) -> String {
+    match descriptions {
+        1 => "a description is refused; see its findings".to_owned(),
+        count => format!("{count} descriptions are refused; see their findings"),
+    }
+}
+
+fn shown(keys: &[&str]) -> String {
+    let more = if keys.len() > KEYS_SHOWN { ", …" } else { "" };
+    keys[..keys.len().min(KEYS_SHOWN)].join(", ") + more
+}
+
+/// Keys of a difference that are named.
+const KEYS_SHOWN: usize = 4;
+/// Longest name of a description that is printed, characters.
+const NAME_LEN: usize = 300;
+
+/// A description by its name or file; relative paths start at the working directory.
+pub(crate) fn read(asked: &str) -> Result<(Chosen, Description), DescriptionError> {
+    let chosen = robots::chosen(asked, Path::new("")).map_err(DescriptionError::Unreadable)?;
+    let description = Description::read(&chosen.source, &chosen.text).map_err(DescriptionError::Faulty)?;
+    Ok((chosen, description))
+}
+
+/// The description that this program is built for.
+pub(crate) fn own() -> Result<Description, DescriptionError> {
+    Description::read(RobotSpec::SOURCE, RobotSpec::TEXT).map_err(DescriptionError::Faulty)
+}
+
+/// Refuses a description that is not the one that this program is built for: brains and host compute with
+/// constants.
+pub(crate) fn ensure_built_for(asked: Option<&str>) -> Result<(), DescriptionError> {
+    let Some(asked) = asked else { return Ok(()) };
+    let (_, description) = read(asked)?;
+    for finding in description.warnings() {
+        note!("{finding}");
+    }
+    let keys = own()?.differences(&description);
+    if keys.is_empty() {
+        return Ok(());
+    }
+    Err(DescriptionError::OtherRobot { asked: asked.to_owned(), built_for: RobotSpec::OURS.name, keys })
+}
+
+/// Inputs of a build for another robot: the value of the environment variable, and the robot's name. The
+/// description is checked first.
+pub(crate) fn to_build(asked: &str) -> Result<(String, String), DescriptionError> {
+    let (chosen, description) = read(asked)?;
+    for finding in description.warnings() {
+        note!("{finding}");
+    }
+    let source = match chosen.file {
+        None => chosen.source,
+        Some(file) => absolute(&file)?.to_string_lossy().into_owned(),
+    };
+    Ok((source, description.name().to_owned()))
+}
+
+fn absolute(file: &Path) -> Result<PathBuf, DescriptionError> {
+    std::path::absolute(file).map_err(|error| DescriptionError::Write(file.to_owned(), error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_robot_is_refused_with_the_command_that_builds_for_it() {
+        assert!(ensure_built_for(None).is_ok());
+        assert!(ensure_built_for(Some(RobotSpec::OURS.name)).is_ok());
+        let other = if RobotSpec::OURS.name == "school" { "wide" } else { "school" };
+        let error = ensure_built_for(Some(other)).unwrap_err().to_string();
+        for part in [RobotSpec::OURS.name, "body.radius", &format!("ONETWO_ROBOT={other} cargo run")] {
+            assert!(error.contains(part), "{error}");
+        }
+        assert!(ensure_built_for(Some("no-such.toml")).unwrap_err().to_string().contains("cannot be read"));
+    }
+
+    #[test]
+    fn constants_match_the_description() {
+        let (own, spec) = (own().unwrap(), RobotSpec::OURS);
+        assert_eq!(own.name(), spec.name);
+        for (path, value) in [
+            ("body.front", spec.hull.front),
+            ("plan.braking", spec.plan.braking),
+            ("turn_placing.rate", spec.turn_placing.rate),
+            ("assumed.role.speed", spec.assumed.role.speed),
+            ("kicker.full_volts", spec.kicker.full_volts),
+            ("wheels.rim_max", spec.wheels.rim_max),
+            ("motors.integral", spec.wheels.integral),
+            ("break_beam.seen", spec.break_beam.seen),
+            ("hardware.pull", spec.hardware.pull),
+            ("body.mass", spec.hardware.mass),
+        ] {
+            assert_eq!(own.number(path), value, "{path}");
+        }
+        assert_eq!(own.pulses("kicker.chip_pulses"), spec.kicker.chip_pulses);
+        assert_eq!(own.wheel_angles(), spec.wheels.degrees);
+    }
+}

@@ -1,0 +1,37 @@
+//! `recording`: recorded matches, read again: traces of ours, whose hosts decide again, and league log files
+//! of any team (docs/architecture.md §7.4). s since the start of the file.
+
+mod beside;
+mod clock;
+mod collect;
+mod compare;
+mod comparison;
+mod decisions;
+mod failure;
+mod moment;
+mod projector;
+mod sheet;
+mod trace_file;
+mod unlike;
+
+pub use beside::Beside;
+pub use clock::{ClockStep, LogClock, Rate};
+pub use collect::{CollectError, OpenLibrary, collect};
+pub use compare::{PlaySettings, comparable, compare};
+pub use comparison::Report as ComparisonReport;
+pub use decisions::{Decision, Decisions, problem_line};
+pub use failure::{Asked, Missing, RecordedError, RecordingFailure, in_file};
+pub use moment::{Moment, Score};
+pub use projector::{Projector, Shown};
+pub use sheet::Sheet;
+pub use trace_file::{TraceFile, begins_as_trace, hosts_of, record_label};
+
+pub use crate::referee_event::{RefereeEvent, RefereeEventFinder, is_meant};
+
+/// Reports of the reading of a recording.
+pub trait ReadObserver {
+    /// One more record was read.
+    fn record(&self);
+    /// A line for the operator.
+    fn note(&self, line: &str);
+}

@@ -1,0 +1,188 @@
+//! `run`: a whole host by one call: sockets and links opened, a thread for each, one loop that feeds the host
+//! what arrives and sends its output (docs/architecture.md §3).
+//!
+//! [`Host`](crate::Host) is a value without sockets; here is what stands around it, for programs that lead
+//! robots. Nothing that is missing ends the loop: it reports what it waits for, and goes on when that
+//! arrives. What an operator sees and asks for goes through [`Operator`]. Times on the host's clock, which is
+//! 0 when the loop starts.
+
+mod alarms;
+mod event_loop;
+mod failure;
+mod identity;
+mod inbox;
+mod port_for_teams;
+mod radio_alarms;
+mod requests;
+mod threads;
+mod tuning;
+mod watch;
+
+use std::ffi::OsString;
+use std::net::{SocketAddr, ToSocketAddrs as _};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use casebase::CaseBase;
+use protocol::{Instant, RobotId};
+use rules::Colour;
+use ssl::net::addresses;
+
+use crate::Host;
+use crate::config::{ParameterChange, RobotLink, TeamConfig};
+use crate::robot_test::TestOrder;
+use crate::shell::{Link, SimSettings};
+
+pub use failure::RunError;
+pub use identity::{PublicKey, real_epoch};
+pub use requests::{change_text, test_text};
+pub use tuning::CONFIG_LEN_MAX;
+
+/// What a host is run with.
+pub struct RunSettings<'a> {
+    /// The team, and the addresses to receive from and send to.
+    pub config: &'a TeamConfig,
+    /// Name, version and commit of the program, for recordings.
+    pub program: Program<'a>,
+    /// The host plays by what it learns of kickers, latencies and the ball.
+    pub learns: bool,
+    /// The cases that robots play, where the host is to understand them.
+    pub cases: Option<CaseBase<'static>>,
+    /// Robots that are started as processes in a simulator, and flags for them.
+    pub virtual_robots: VirtualRobots,
+    /// Files that are written.
+    pub output: OutputFiles<'a>,
+    /// Time after which the loop ends, s; none: until it is stopped.
+    pub duration: Option<f64>,
+}
+
+/// The program that runs a host.
+#[derive(Clone, Copy, Debug)]
+pub struct Program<'a> {
+    /// Its version.
+    pub version: &'a str,
+    /// The commit that it was built from.
+    pub commit: &'a str,
+}
+
+/// Robots that this program starts in a simulator, each as a process of the program's own file.
+#[derive(Clone, Debug, Default)]
+pub struct VirtualRobots {
+    /// Numbers of the robots.
+    pub ids: Vec<RobotId>,
+    /// Flags for each of them, such as the library of cases.
+    pub arguments: Vec<OsString>,
+}
+
+/// Files that are written.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OutputFiles<'a> {
+    /// Stem of the recording of the match, as `onetwo replay` takes it.
+    pub record: Option<&'a Path>,
+    /// Learned values, as lines of `team.toml`.
+    pub learned: Option<&'a Path>,
+    /// The team's file that was read; changed parameters are saved to it.
+    pub config: Option<&'a Path>,
+}
+
+/// What an operator asks for while robots play.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// All robots stand until the end.
+    Halt,
+    /// A parameter of the team changes.
+    Change(ParameterChange),
+    /// The test of a kicker starts or ends.
+    Test(TestOrder),
+    /// Changed parameters are saved to the team's file.
+    Save,
+}
+
+/// Whoever watches a host that runs: a terminal, a page, or nobody. Calls must return at once: the thread
+/// that leads robots makes them.
+pub trait Operator {
+    /// Everything is open, and the loop starts.
+    fn started(&mut self) {}
+    /// A line for the operator: what is waited for, what arrives, alarms.
+    fn line(&mut self, line: String);
+    /// The state in one line, ten times a second.
+    fn status(&mut self, _status: String) {}
+    /// A datagram of the vision was handled.
+    fn vision(&mut self, _bytes: &[u8]) {}
+    /// A datagram of the referee was handled.
+    fn referee(&mut self, _now: Instant, _bytes: &[u8]) {}
+    /// Time that the host took for an input.
+    fn took(&mut self, _time: std::time::Duration) {}
+    /// A fault of radio or robots.
+    fn fault(&mut self, _now: Instant, _fault: String) {}
+    /// A parameter was changed.
+    fn changed(&mut self) {}
+    /// The host after an input, with the alarms of the moment.
+    fn look(&mut self, _now: Instant, _host: &Host, _alarms: Vec<String>) {}
+    /// The next request, if there is one.
+    fn next_request(&mut self) -> Option<Request> {
+        None
+    }
+    /// Why the last request is refused.
+    fn refuse(&mut self, _reason: String) {}
+    /// Robots are halted, and the loop has ended; only lines follow.
+    fn ended(&mut self) {}
+}
+
+/// Runs a host until `stopped` is set, then halts the robots.
+pub fn run(
+    settings: &RunSettings<'_>,
+    operator: &mut dyn Operator,
+    stopped: &AtomicBool,
+) -> Result<(), RunError> {
+    let key = identity::team_key(settings.config, operator)?;
+    let link = open_link(settings, key)?;
+    event_loop::run(settings, key, link, operator, stopped)
+}
+
+fn open_link(settings: &RunSettings<'_>, key: protocol::frame::TeamKey) -> Result<Box<dyn Link>, RunError> {
+    let config = settings.config;
+    let simulator = match &config.robots {
+        RobotLink::Simulator(host) => simulator(host, config.colour)?,
+        RobotLink::Udp(_) | RobotLink::Serial { .. } => ([127, 0, 0, 1], 0).into(),
+    };
+    let program: PathBuf = std::env::current_exe().map_err(RunError::Program)?;
+    let start = |_: &str| SimSettings {
+        program,
+        colour: config.colour,
+        league: config.league,
+        robots: settings.virtual_robots.ids.clone(),
+        simulator,
+        key,
+        more: settings.virtual_robots.arguments.clone(),
+    };
+    Ok(crate::shell::open(&config.robots, start)?)
+}
+
+/// Address where a simulator takes a team's commands: `HOST[:PORT]` names its control port.
+fn simulator(host: &str, colour: Colour) -> Result<SocketAddr, RunError> {
+    let (name, port) = match host.rsplit_once(':') {
+        Some((name, port)) if !name.contains(':') => (name, port.parse().ok()),
+        _ => (host, Some(addresses::SIMULATOR_PORT)),
+    };
+    let offset = match colour {
+        Colour::Blue => 1,
+        Colour::Yellow => 2,
+    };
+    let port = port.and_then(|port: u16| port.checked_add(offset));
+    let found = port.and_then(|port| (name, port).to_socket_addrs().ok()?.next());
+    found.ok_or_else(|| RunError::UnknownSimulator(host.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_simulator_s_ports_follow_its_control_port() {
+        let port = |host, colour| simulator(host, colour).map(|address| address.port()).ok();
+        assert_eq!(port("127.0.0.1", Colour::Blue), Some(10301));
+        assert_eq!(port("127.0.0.1:20300", Colour::Yellow), Some(20302));
+        assert_eq!(port("127.0.0.1:x", Colour::Blue), None);
+    }
+}

@@ -1,0 +1,73 @@
+//! `requests`: what an operator asks for while robots play: HALT, parameters, tests of kickers.
+
+use super::Request;
+use super::event_loop::EventLoop;
+use crate::config::ParameterChange;
+use crate::robot_test::TestOrder;
+use crate::{Input, InputVerdict};
+
+impl EventLoop<'_> {
+    /// Shows the host to the operator, and does what is asked for.
+    pub(super) fn show(&mut self) {
+        let now = self.now();
+        let alarms = [self.alarms.now(), self.watch.missing()].concat();
+        self.operator.look(now, &self.host, alarms);
+        while let Some(request) = self.operator.next_request() {
+            let done = match request {
+                Request::Halt => {
+                    self.feed(now, Input::Halt);
+                    Ok("HALT was asked for on the page: the robots stand until the end".to_owned())
+                }
+                Request::Change(change) => self.change(change),
+                Request::Test(order) => self.test(order),
+                Request::Save => self.tuning.save(),
+            };
+            match done {
+                Ok(line) => self.lines.push(line),
+                Err(reason) => self.operator.refuse(reason),
+            }
+        }
+    }
+
+    /// Changes a parameter; a line that says so, or why it stays as it is.
+    fn change(&mut self, change: ParameterChange) -> Result<String, String> {
+        self.tuning.check(&self.host, &change)?;
+        let now = self.now();
+        if let InputVerdict::NotChanged(refused) =
+            self.feed(now, Input::Parameter(change.to_json().as_bytes()))
+        {
+            return Err(refused.to_string());
+        }
+        let line = format!("parameter  {}", change_text(&change));
+        self.tuning.keep(change);
+        self.operator.changed();
+        Ok(line)
+    }
+
+    /// Starts or ends the test of a kicker; a line that says so, or why not.
+    fn test(&mut self, order: TestOrder) -> Result<String, String> {
+        let now = self.now();
+        if let InputVerdict::NoTest(refused) = self.feed(now, Input::Test(order.to_json().as_bytes())) {
+            return Err(refused.to_string());
+        }
+        Ok(format!("test       {}", test_text(order)))
+    }
+}
+
+/// A change in words, for events and logs.
+pub fn change_text(change: &ParameterChange) -> String {
+    let robot = change.robot.map(|robot| format!(" of robot {robot}")).unwrap_or_default();
+    match &change.value {
+        Some(value) => format!("{}{robot} is now {value}, by hand", change.key),
+        None => format!("{}{robot} is as if left out, by hand", change.key),
+    }
+}
+
+/// A test in words, for events and logs.
+pub fn test_text(order: TestOrder) -> String {
+    match order {
+        TestOrder::Kick { robot, kicks } => format!("the kicker of robot {robot} is tested, {kicks} kicks"),
+        TestOrder::Stand => "all robots stand while the other team tests a kicker".to_owned(),
+        TestOrder::End => "the test of a kicker has ended".to_owned(),
+    }
+}
