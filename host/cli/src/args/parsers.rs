@@ -3,7 +3,8 @@
 
 use std::net::{SocketAddr, ToSocketAddrs as _};
 
-use arena::evaluation::{Profile, Shard};
+use arena::Profile;
+use study::evaluation::Shard;
 use casebase::GoalEnd;
 use firmware_build::{Board, ImageBody, Program, boards};
 use hil_sim::small_size::network::RefereeKind;
