@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use drawing::{Anchor, Font, Svg, Theme};
+use figures::{Anchor, Font, Svg, Theme};
 use hil_sim::{AirSettings, Bursts};
 
 use crate::swarm::plan::{Plan, Squad};

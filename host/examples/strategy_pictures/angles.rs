@@ -1,7 +1,7 @@
 //! `angles`: figure of the open angle and the three placements of keeper and primary defenders, as the
 //! paper's Figure 7.
 
-use drawing::{Anchor, Svg};
+use figures::{Anchor, Svg};
 use geometry::{Angle, Attack, Point};
 use host::strategy::threat::cover::{Case, Cover, cover};
 use host::strategy::threat::{ThreatSettings, angle};

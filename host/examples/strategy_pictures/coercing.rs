@@ -1,7 +1,7 @@
 //! `coercing`: figure of the coerce plan. The optimistic attack and the coerce plan against it, by the
 //! planner (§4.2, §4.3).
 
-use drawing::{Anchor, Svg};
+use figures::{Anchor, Svg};
 use geometry::{Point, Vector};
 use host::strategy::View;
 use host::strategy::coerce::grid::Cell;

@@ -2,7 +2,7 @@
 //! mm, +x to the right.
 
 use casebase::FieldMm;
-use drawing::{Anchor, At, Colors, Font, Svg, Theme};
+use figures::{Anchor, At, Colors, Font, Svg, Theme};
 use geometry::{Attack, Point};
 use host::strategy::View;
 use rules::{AreaForm, FieldSpec};

@@ -1,11 +1,11 @@
 //! `page`: layout of the figures. Panels with a field of any league, robots, the ball, and areas of equal
 //! value.
 //!
-//! Places are given in metres of the attack frame; the figure is in px with y up (`drawing`).
+//! Places are given in metres of the attack frame; the figure is in px with y up (`figures`).
 
 use std::fmt::{Display, Write as _};
 
-use drawing::{Anchor, At, Colors, Font, Svg, Theme};
+use figures::{Anchor, At, Colors, Font, Svg, Theme};
 use geometry::{Angle, Attack, Point};
 use host::strategy::threat::edge::Edge;
 use rules::FieldSpec;
@@ -244,7 +244,7 @@ pub(crate) fn finish(panels: &[&Svg], [width, height]: At, legend: &Svg, title: 
 /// Lines of text, px from the top down.
 pub(crate) fn lines_of_text(svg: &mut Svg, [x, top]: At, room: f64, text: &str) {
     let fill = Theme::Light.colors().faint;
-    for (i, line) in drawing::wrapped(text, TEXT, room).iter().enumerate() {
+    for (i, line) in figures::wrapped(text, TEXT, room).iter().enumerate() {
         svg.text(
             [x, top - 19.0 * i as f64],
             line,

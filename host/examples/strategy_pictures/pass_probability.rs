@@ -2,7 +2,7 @@
 //! that is maximised (Biswas et al. 2014 §3.1): c2 for flat passes and for chips, c2', and P(receive) ·
 //! P(goal) with the place that the search finds.
 
-use drawing::{Anchor, At, Svg, half_extent};
+use figures::{Anchor, At, Svg, half_extent};
 use geometry::{Attack, Point};
 use host::strategy::View;
 use host::strategy::pass::{Kicks, PassConstants, PassScene, Rating, SAMPLES, Search};

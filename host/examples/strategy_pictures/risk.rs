@@ -1,7 +1,7 @@
 //! `risk`: figure of the probability to receive a moving ball. Equation 6 over the field for c = 5 and 20, as
 //! the paper's Figure 6.
 
-use drawing::{Anchor, Svg};
+use figures::{Anchor, Svg};
 use geometry::{Attack, Point, Vector};
 use host::strategy::threat::ThreatSettings;
 use host::strategy::threat::receiving::{isocontour, risk_of_receiving};

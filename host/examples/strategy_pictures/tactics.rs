@@ -1,7 +1,7 @@
 //! `tactics`: figure of the tactic models. P(p | M_t, W) of the four models over the field, as the paper's
 //! Figure 5.
 
-use drawing::{Anchor, Font, Svg};
+use figures::{Anchor, Font, Svg};
 use geometry::Point;
 use host::strategy::coerce::detect::Detector;
 use host::strategy::coerce::tactics::{CoerceSituation, Models, Tactic};
@@ -52,7 +52,7 @@ pub(crate) fn draw() -> String {
         );
         let font = Font { size: TEXT, fill: "#1b1b1b", bold: false, halo: None };
         legend.text([x + 34.0, 94.0], tactic.name(), Anchor::Start, font);
-        x += 56.0 + drawing::width(tactic.name(), TEXT);
+        x += 56.0 + figures::width(tactic.name(), TEXT);
     }
     let text = "Bands: the model's likelihood is above 0.2 (α, the threshold), 0.4, 0.6 and 0.8. Discs: our robots, T takes the free kick, 0 is \
                 the keeper. Squares: opponents in the colour of the tactic that explains their place best, with its likelihood. We attack \

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use arena::evaluation::Profile;
 use casebase::Symmetry;
-use drawing::Theme;
-use drawing::cases::{CasePicture, case_picture};
+use figures::Theme;
+use figures::{CasePicture, case_picture};
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 use serde_json::{Value, json as value};
 

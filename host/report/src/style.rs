@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use drawing::{Colors, Theme};
+use figures::{Colors, Theme};
 
 use crate::map::{CHANCE, LOST, SHADES};
 use crate::plot::GRID;

@@ -2,7 +2,7 @@
 //! passes the team had, with Wilson's 95 % interval; on the diagonal both agree (Biswas et al. 2014,
 //! equation 5). px, shares from 0 to 1.
 
-use drawing::{Anchor, Font, Svg, Theme};
+use figures::{Anchor, Font, Svg, Theme};
 
 use super::passes::Passes;
 

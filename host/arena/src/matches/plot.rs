@@ -2,7 +2,7 @@
 //! % intervals; the paper's range as a band. px, a ratio's axis is logarithmic, for 2 and 1/2 are as far from
 //! 1.
 
-use drawing::{Anchor, Font, Svg, Theme};
+use figures::{Anchor, Font, Svg, Theme};
 
 use super::outcome::{Estimate, Outcome};
 use super::paper::PAPER;

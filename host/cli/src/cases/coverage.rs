@@ -10,8 +10,8 @@ use std::process::ExitCode;
 use case_tools::coverage::{Area, CellCounters, Cells, Counters, VERDICTS};
 use casebase::PointMm;
 use clap::{Args, ValueEnum};
-use drawing::Theme;
-use drawing::cases::{HeatMap, Scale, heat_maps};
+use figures::Theme;
+use figures::{HeatMap, Scale, heat_maps};
 use serde_json::{Value, json};
 
 use super::survey::{SurveyArgs, Trial, class, percent, problem_line, region};

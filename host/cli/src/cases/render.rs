@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use arena::cases::{LibraryHandle, counted, problem};
 use casebase::{CaseVerdict, Match, Problem, Symmetry, rank_order};
 use clap::{Args, ValueEnum};
-use drawing::Theme;
-use drawing::cases::{CasePicture, Overlay, case_picture, sheet};
+use figures::Theme;
+use figures::{CasePicture, Overlay, case_picture, sheet};
 
 use super::lines::LINE_MAX;
 use super::show::{find, unknown};

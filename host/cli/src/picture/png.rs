@@ -54,8 +54,8 @@ impl fmt::Display for PngError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use drawing::Theme;
-    use drawing::cases::{CasePicture, case_picture};
+    use figures::Theme;
+    use figures::{CasePicture, case_picture};
 
     #[test]
     fn a_case_in_every_symmetry_has_a_png_of_the_promised_size() {

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use casebase::FieldMm;
-use drawing::{Anchor, Font, Svg, Theme, draw_field, field_lines, half_extent};
+use figures::{Anchor, Font, Svg, Theme, draw_field, field_lines, half_extent};
 use geometry::{Field, Point};
 use hil_sim::{Configuration, Scenario, TrialOutcome};
 use maud::{Markup, PreEscaped, html};
@@ -50,7 +50,7 @@ pub(crate) fn sheets(maps: &[Map]) -> Vec<Picture> {
             let font = Font { size, fill, bold: true, halo: None };
             let name = description::approach(map.cell.approach);
             svg.text([-x, down - size], name, Anchor::Start, font);
-            let after = -x + drawing::width(name, size) * 1.15 + size;
+            let after = -x + figures::width(name, size) * 1.15 + size;
             let font = Font { size: size * 0.8, fill: colors.faint, bold: false, halo: None };
             svg.text([after, down - size], &caption(map), Anchor::Start, font);
             let middle = down - size * 1.6 - y;
@@ -302,7 +302,7 @@ fn legend(svg: &mut Svg, [left, top]: [f64; 2], [from, right]: [f64; 2], size: f
     let font = Font { size, fill: colors.ink, bold: false, halo: None };
     let (mut across, mut down) = (left, top - size * 1.2);
     for (sign, label) in entries() {
-        let wide = 470.0 + drawing::width(label, size);
+        let wide = 470.0 + figures::width(label, size);
         if across > left && across + wide > from - size {
             (across, down) = (left, down - size * 1.9);
         }

@@ -1,6 +1,6 @@
 //! `axis`: horizontal plot axis. A horizontal axis with round numbers, its unit at its end.
 
-use drawing::{Anchor, Font, Svg, Theme};
+use figures::{Anchor, Font, Svg, Theme};
 
 /// A horizontal axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use arena::evaluation::Measure;
 use arena::evaluation::TableRow;
 use arena::evaluation::statistics::Interval;
-use drawing::{Anchor, Font, Svg, Theme};
+use figures::{Anchor, Font, Svg, Theme};
 
 use super::axis::{Axis, BELOW};
 use super::{Entry, Figure, PANEL, Panel, Shape, entries, keys, scenarios, style};

@@ -13,7 +13,7 @@ mod uses;
 
 use arena::evaluation::{Measure, TableRow};
 use brain::Approach;
-use drawing::{Anchor, Font, Svg, Theme};
+use figures::{Anchor, Font, Svg, Theme};
 use hil_sim::Scenario;
 use maud::{Markup, PreEscaped, html};
 
@@ -142,14 +142,14 @@ impl Figure {
         let right = (PANEL + GAP) * columns as f64 - GAP;
         let heading = Font { size: 17.0, fill: colors.ink, bold: true, halo: None };
         let mut down = 6.0;
-        for line in drawing::wrapped(&self.title, heading.size, right) {
+        for line in figures::wrapped(&self.title, heading.size, right) {
             down -= 21.0;
             svg.text([0.0, down], &line, Anchor::Start, heading);
         }
         down -= 24.0;
         let (mut across, font) = (0.0, Font { size: 13.0, fill: colors.ink, bold: false, halo: None });
         for key in &self.keys {
-            let wide = 40.0 + drawing::width(&key.label, font.size);
+            let wide = 40.0 + figures::width(&key.label, font.size);
             if across > 0.0 && across + wide > right {
                 (across, down) = (0.0, down - 22.0);
             }

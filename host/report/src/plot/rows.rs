@@ -1,7 +1,7 @@
 //! `rows`: rows of dots with error bars. A scenario a row, the numbers beside the whiskers.
 
 use brain::Approach;
-use drawing::{Anchor, Font, Svg, Theme};
+use figures::{Anchor, Font, Svg, Theme};
 
 use super::axis::{Axis, BELOW, GRID};
 use super::{PANEL, Panel, style};

@@ -3,7 +3,7 @@
 
 use arena::CycleEnd;
 use arena::evaluation::{CaseUse, Profile};
-use drawing::{Anchor, Font, Svg, Theme};
+use figures::{Anchor, Font, Svg, Theme};
 
 use super::axis::{Axis, BELOW};
 use super::{Figure, Key, PANEL, Panel, Shape};

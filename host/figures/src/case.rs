@@ -10,8 +10,8 @@ use casebase::{
 
 use crate::{Anchor, At, Colors, Font, Svg, Theme, draw_field, half_extent, wrapped};
 
-use super::description;
 use super::labels::Labels;
+use super::verdict::caption_of;
 
 /// A case to be drawn.
 #[derive(Clone, Debug)]
@@ -361,7 +361,7 @@ fn caption(pen: &mut Pen, picture: &CasePicture<'_>, [x, y]: [f64; 2]) -> String
     let side = format!("{} · id {} · attacks to the {towards}", case.symmetry().label(), case.id());
     let font = Font { size: unit * 1.7, fill: colors.faint, bold: false, halo: None };
     pen.svg.text([x, y + unit * 1.6], &side, Anchor::End, font);
-    let verdict = picture.overlay.map(|overlay| description::verdict(overlay.verdict, overlay.rank));
+    let verdict = picture.overlay.map(|overlay| caption_of(overlay.verdict, overlay.rank));
     let mut below = -y - unit * 0.6;
     for text in [Some(picture.intent.to_owned()), verdict, Some(LEGEND.to_owned())].into_iter().flatten() {
         for line in wrapped(&text, font.size, 2.0 * x) {

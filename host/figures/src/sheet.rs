@@ -5,7 +5,7 @@ use crate::{Anchor, Font, Svg, Theme, half_extent};
 use super::case::{CasePicture, small};
 
 /// The cases as small figures on one page, in the order given; a change of region starts a row. Scopes and
-/// symbols are as in [`case_picture`](super::case_picture), without letters, intents and captions.
+/// symbols are as in [`case_picture`](crate::case_picture), without letters, intents and captions.
 pub fn sheet(title: &str, pictures: &[CasePicture<'_>]) -> String {
     let mut page = Svg::default();
     let colors = pictures.first().map_or(Theme::default(), |picture| picture.theme).colors();
