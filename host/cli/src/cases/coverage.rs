@@ -10,8 +10,7 @@ use std::process::ExitCode;
 use case_tools::coverage::{Area, CellCounters, Cells, Counters, VERDICTS};
 use casebase::PointMm;
 use clap::{Args, ValueEnum};
-use figures::Theme;
-use figures::{HeatMap, Scale, heat_maps};
+use figures::{HeatMap, Scale, Theme, heat_maps};
 use serde_json::{Value, json};
 
 use super::survey::{SurveyArgs, Trial, class, percent, problem_line, region};

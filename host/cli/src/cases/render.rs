@@ -7,8 +7,7 @@ use std::process::ExitCode;
 use arena::cases::{LibraryHandle, counted, problem};
 use casebase::{CaseVerdict, Match, Problem, Symmetry, rank_order};
 use clap::{Args, ValueEnum};
-use figures::Theme;
-use figures::{CasePicture, Overlay, case_picture, sheet};
+use figures::{CasePicture, Overlay, Theme, case_picture, sheet};
 
 use super::lines::LINE_MAX;
 use super::show::{find, unknown};
