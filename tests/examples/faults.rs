@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use match_tests::swarm::report;
-use match_tests::sweep::{page, snapshot, sweep};
+use match_tests::sweep::{loss_chart, page, sweep};
 
 fn main() -> ExitCode {
     let (mut seeds, mut write) = (40_u64, false);
@@ -35,7 +35,7 @@ fn main() -> ExitCode {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
     let written = std::fs::create_dir_all(docs.join("faults"))
         .and_then(|()| std::fs::write(docs.join("faults.md"), text))
-        .and_then(|()| std::fs::write(docs.join("faults/loss.svg"), snapshot(&rows)));
+        .and_then(|()| std::fs::write(docs.join("faults/loss.svg"), loss_chart(&rows)));
     match written {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use drawing::{Anchor, Font, Svg, Theme};
+use figures::{Anchor, Axis, Column, Font, Svg, Table, Theme, row};
 use hil_sim::{AirSettings, Bursts};
 
 use crate::swarm::plan::{Plan, Squad};
@@ -121,28 +121,30 @@ pub fn page(rows: &[Row], seeds: u64) -> String {
     );
     for squad in [Squad::Legged, Squad::Wheels] {
         let name = if squad == Squad::Legged { "Walking robots" } else { "Robots on wheels" };
-        let _ = write!(
-            text,
-            "\n## {name}\n\n| lost | how | gameplays | finished, % | stops a minute | stood, % | new cycle, ms |\n|---:|---|---:|---:|---:|---:|---:|\n"
-        );
-        for row in rows.iter().filter(|row| row.squad == squad) {
-            let ended = row.counters.finished + row.counters.stopped;
-            let (percent, kind) = (row.percent, row.kind.label());
-            let [finished, stops, stood, gap] =
-                [row.finished(), row.false_stops(), row.stood(), row.gap()].map(number);
-            let _ =
-                writeln!(text, "| {percent} % | {kind} | {ended} | {finished} | {stops} | {stood} | {gap} |");
-        }
+        // Writing to a String cannot fail.
+        let _ =
+            write!(text, "\n## {name}\n\n{}", table(rows.iter().filter(|row| row.squad == squad)).markdown());
     }
     text
+}
+
+fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
+    let numbers = ["gameplays", "finished, %", "stops a minute", "stood, %", "new cycle, ms"];
+    let columns = [Column::number("lost", ""), Column::text("how")];
+    let numbers = numbers.map(|head| Column::number(head, ""));
+    Table::new(columns.into_iter().chain(numbers)).with_rows(rows.map(|row| {
+        let ended = row.counters.finished + row.counters.stopped;
+        let measures = [row.finished(), row.false_stops(), row.stood(), row.gap()].map(number);
+        row![format!("{} %", row.percent), row.kind.label(), ended].with(measures)
+    }))
 }
 
 fn number(value: Option<f64>) -> String {
     value.map_or("–".into(), |value| format!("{value:.1}"))
 }
 
-/// Three panels, a line for each squad and kind.
-pub fn snapshot(rows: &[Row]) -> String {
+/// Chart of three panels, a line for each squad and kind.
+pub fn loss_chart(rows: &[Row]) -> String {
     let colors = Theme::Light.colors();
     let mut svg = Svg::default();
     type Measure = (&'static str, fn(&Row) -> Option<f64>);
@@ -151,29 +153,19 @@ pub fn snapshot(rows: &[Row]) -> String {
         ("stops in a robot's minute", Row::false_stops),
         ("time to a new cycle, ms", Row::gap),
     ];
+    let font = Font { size: 13.0, fill: colors.ink, bold: false, halo: None };
     for (place, (title, measure)) in panels.into_iter().enumerate() {
         let left = 60.0 + 320.0 * place as f64;
-        let (step, steps) = round_steps(rows.iter().filter_map(measure).fold(1.0, f64::max));
-        let most = f64::from(steps) * step;
-        let font = Font { size: 13.0, fill: colors.ink, bold: false, halo: None };
+        let most = rows.iter().filter_map(measure).fold(1.0, f64::max);
+        let up = Axis::in_intervals([0.0, most], [60.0, 260.0], 5.0);
+        let across = Axis::linear([0.0, 50.0], [left, left + 250.0]);
         svg.text([left, 290.0], title, Anchor::Start, Font { bold: true, ..font });
-        let line = format!(r#"stroke="{}" stroke-width="1""#, colors.faint);
-        for tick in 0..=steps {
-            let (value, y) = (step * f64::from(tick), 60.0 + 200.0 * f64::from(tick) / f64::from(steps));
-            svg.line([left, y], [left + 250.0, y], &line);
-            svg.text([left - 6.0, y - 4.0], &value.to_string(), Anchor::End, font);
-        }
-        for percent in PERCENT {
-            let x = left + 5.0 * f64::from(percent);
-            svg.text([x, 42.0], &percent.to_string(), Anchor::Middle, font);
-        }
-        svg.text([left + 125.0, 22.0], "lost, %", Anchor::Middle, font);
+        up.draw_beside(&mut svg, left, left + 250.0);
+        across.draw_below(&mut svg, 260.0, 60.0, "lost, %");
         for (squad, kind, color, dash) in LINES {
-            let points: Vec<[f64; 2]> = (rows.iter())
-                .filter(|row| row.squad == squad && row.kind == kind)
-                .filter_map(|row| {
-                    Some([left + 5.0 * f64::from(row.percent), 60.0 + 200.0 * measure(row)? / most])
-                })
+            let own = rows.iter().filter(|row| row.squad == squad && row.kind == kind);
+            let points: Vec<_> = own
+                .filter_map(|row| Some([across.place(f64::from(row.percent)), up.place(measure(row)?)]))
                 .collect();
             svg.polyline(&points, format!(r#"stroke="{color}" stroke-width="2" stroke-dasharray="{dash}""#));
             for point in points {
@@ -184,25 +176,12 @@ pub fn snapshot(rows: &[Row]) -> String {
     let mut x = 60.0;
     for (squad, kind, color, dash) in LINES {
         let name = if squad == Squad::Legged { "walking" } else { "wheels" };
-        svg.line(
-            [x, 324.0],
-            [x + 30.0, 324.0],
-            format!(r#"stroke="{color}" stroke-width="2" stroke-dasharray="{dash}""#),
-        );
-        let font = Font { size: 13.0, fill: colors.ink, bold: false, halo: None };
+        let style = format!(r#"stroke="{color}" stroke-width="2" stroke-dasharray="{dash}""#);
+        svg.line([x, 324.0], [x + 30.0, 324.0], style);
         svg.text([x + 36.0, 320.0], &format!("{name}, {}", kind.label()), Anchor::Start, font);
         x += 220.0;
     }
     svg.finish([0.0, 0.0], [1_000.0, 350.0], 1.0, colors.paper, "What loss costs a team")
-}
-
-/// An axis up to `most` at least: round steps (1, 2, 2.5 or 5 times a power of ten), five or fewer, and their
-/// number.
-fn round_steps(most: f64) -> (f64, u32) {
-    let power = 10_f64.powf((most / 5.0).log10().floor());
-    let steps = [1.0, 2.0, 2.5, 5.0].map(|factor| factor * power);
-    let step = steps.into_iter().find(|step| step * 5.0 >= most).unwrap_or(10.0 * power);
-    (step, (most / step).ceil() as u32)
 }
 
 /// Dark enough for white paper, and distinguishable without red.
@@ -219,17 +198,3 @@ const RUN_MS: u32 = 15_000;
 /// Mean length of a dead period, ms: a body that blocks the radio for a moment, and as long as a robot waits
 /// for its host.
 pub const BURST_MS: f32 = 100.0;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_axis_has_round_numbers_and_holds_what_it_shows() {
-        for (most, axis) in
-            [(62.3, (20.0, 4)), (26.4, (10.0, 3)), (111.4, (25.0, 5)), (1.0, (0.2, 5)), (50.0, (10.0, 5))]
-        {
-            assert_eq!(round_steps(most), axis);
-        }
-    }
-}

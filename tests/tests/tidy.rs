@@ -379,7 +379,7 @@ const LOWEST_FIRST: [&str; 35] = [
     "casebase",
     "case-tools",
     "case-library",
-    "drawing",
+    "figures",
     "workloads",
     "nrf24-model",
     "nrf24",

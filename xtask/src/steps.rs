@@ -138,7 +138,7 @@ const PUBLISHED: [&str; 16] = [
     "onetwo-nrf24",
     "onetwo-brain",
     "onetwo-runtime",
-    "onetwo-drawing",
+    "onetwo-figures",
     "onetwo-hil-sim",
     "onetwo-host",
 ];

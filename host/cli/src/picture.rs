@@ -1,11 +1,10 @@
-//! `picture`: output of figures as SVG or PNG. An SVG as it is, or as a PNG that is equal on every machine:
-//! its letters come from the font in `fonts`, never from what is installed.
+//! `picture`: figures written as SVG or PNG. A PNG is equal on every machine: its letters come from the font in
+//! `fonts`, never from what is installed.
 
 #[cfg(feature = "png")]
 mod png;
 
 use std::ffi::OsStr;
-use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -40,35 +39,24 @@ pub(crate) fn flag(text: &str) -> Result<bool, SnapshotError> {
 }
 
 /// Why a figure is not written.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub(crate) enum SnapshotError {
     /// The name ends in none of these.
+    #[error("expected a name that ends in .{}", .0.join(" or ."))]
     Name(&'static [&'static str]),
     /// The file cannot be written.
+    #[error("{0}")]
     Write(io::Error),
     /// The drawing cannot be turned into pixels.
     #[cfg(feature = "png")]
+    #[error("{0}")]
     Png(png::PngError),
     /// This program writes SVG alone.
+    #[error(
+        "this program was built without PNG; take SVG, or rebuild it: cargo build --release --features png"
+    )]
     WithoutPng,
 }
-
-impl fmt::Display for SnapshotError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Name(kinds) => write!(f, "expected a name that ends in .{}", kinds.join(" or .")),
-            Self::Write(error) => write!(f, "{error}"),
-            #[cfg(feature = "png")]
-            Self::Png(error) => write!(f, "{error}"),
-            Self::WithoutPng => f.write_str(
-                "this program was built without PNG; take SVG, or rebuild it: \
-                 cargo build --release --features png",
-            ),
-        }
-    }
-}
-
-impl std::error::Error for SnapshotError {}
 
 /// A file that cannot be written, and why.
 #[derive(Debug, thiserror::Error)]
@@ -102,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_snapshot_has_a_name_that_reports_its_kind() {
+    fn the_extension_of_a_figure_names_its_format() {
         assert!(named("a.svg", &["svg", "png"]).is_ok());
         assert_eq!(named("a.PNG", &["svg", "png"]).is_ok(), cfg!(feature = "png"));
         let refused = named("a.jpg", &["svg", "png"]).unwrap_err().to_string();

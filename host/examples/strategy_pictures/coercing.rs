@@ -1,7 +1,7 @@
 //! `coercing`: figure of the coerce plan. The optimistic attack and the coerce plan against it, by the
 //! planner (§4.2, §4.3).
 
-use drawing::{Anchor, Svg};
+use figures::{Anchor, Svg};
 use geometry::{Point, Vector};
 use host::strategy::View;
 use host::strategy::coerce::grid::Cell;
@@ -12,7 +12,7 @@ use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;
 use rules::League;
 
-use crate::page::{GAP, GREEN, Panel, RED, YELLOW, finish, lines_of_text};
+use crate::page::{GAP_PX, GREEN, Panel, RED, YELLOW, finish, lines_of_text};
 use crate::{scenes, tactics};
 
 /// SVG text of the figure.
@@ -23,14 +23,14 @@ pub(crate) fn draw() -> String {
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let mut planner = Planner::new(CoerceSettings::of(league), Models::default());
     planner.observe(&view, kicker);
-    let Some(plan) = planner.plan(&view, &ByPassLocation::new(&kicks), kicker, SEED) else {
+    let Some(plan) = planner.plan(&view, &ByPassLocation::new(&kicks), kicker, PLANNER_SEED) else {
         return String::new();
     };
     let left = optimistic(&view, plan);
     let size = left.size();
-    let right = coerced(&view, plan, size[0] + 2.0 * GAP);
+    let right = coerced(&view, plan, size[0] + 2.0 * GAP_PX);
     let mut legend = Svg::default();
-    let width = 2.0 * size[0] + 3.0 * GAP;
+    let width = 2.0 * size[0] + 3.0 * GAP_PX;
     let first = plan.coerce.coercers.first().map_or(0, |coercer| coercer.robot.number());
     let text = format!(
         "Left: P(receive)·P(goal) of every cell in percent, against those who follow the ball alone (coloured squares; hollow ones follow \
@@ -39,10 +39,10 @@ pub(crate) fn draw() -> String {
          (discs to hollow discs) and where their followers are expected (squares to hollow squares). T takes the kick, R receives. Free \
          kick on the field of 2013, towards the right."
     );
-    lines_of_text(&mut legend, [GAP, 88.0], width - 2.0 * GAP, &text);
+    lines_of_text(&mut legend, [GAP_PX, 88.0], width - 2.0 * GAP_PX, &text);
     finish(
         &[&left.svg, &right.svg],
-        [width, size[1] + BELOW + 32.0],
+        [width, size[1] + LEGEND_HEIGHT_PX + 32.0],
         &legend,
         "The Coerce and Attack Planner",
     )
@@ -50,7 +50,7 @@ pub(crate) fn draw() -> String {
 
 /// Steps 1 and 2 of the planner.
 fn optimistic(view: &View, plan: &CapPlan) -> Panel {
-    let mut panel = Panel::whole(view.field, [GAP, BELOW], SCALE);
+    let mut panel = Panel::whole(view.field, [GAP_PX, LEGEND_HEIGHT_PX], PX_PER_M);
     let most = plan.values.iter().copied().fold(1e-6, f32::max);
     for cell in Cell::all() {
         let value = plan.values[cell.index()];
@@ -73,7 +73,7 @@ fn optimistic(view: &View, plan: &CapPlan) -> Panel {
 
 /// Step 3 of the planner.
 fn coerced(view: &View, plan: &CapPlan, left: f64) -> Panel {
-    let mut panel = Panel::whole(view.field, [left, BELOW], SCALE);
+    let mut panel = Panel::whole(view.field, [left, LEGEND_HEIGHT_PX], PX_PER_M);
     let sent = |cell: Cell| plan.coerce.first[cell.index()];
     for cell in Cell::all() {
         shade(&mut panel, view, cell, RED, 0.6 * sent(cell));
@@ -140,7 +140,7 @@ fn robots(panel: &mut Panel, view: &View, plan: &CapPlan) {
     }
 }
 
-const SCALE: f64 = 104.0;
-/// Space for the text below, px.
-const BELOW: f64 = 112.0;
-const SEED: u64 = 1;
+const PX_PER_M: f64 = 104.0;
+/// Height of the text below, px.
+const LEGEND_HEIGHT_PX: f64 = 112.0;
+const PLANNER_SEED: u64 = 1;

@@ -1,4 +1,4 @@
-//! `strategy_snapshots`: the figures of the second paper, by our own code (Biswas et al. 2014).
+//! `strategy_pictures`: the figures of the second paper, by our own code (Biswas et al. 2014).
 //!
 //! `cargo run --release -p onetwo-host --example strategy_pictures -- FOLDER` writes them to that directory;
 //! `cargo xtask pictures` keeps those in `docs/strategy`.
@@ -34,9 +34,9 @@ fn main() -> ExitCode {
 }
 
 /// A figure's file and the function that draws it.
-type Picture = (&'static str, fn() -> String);
+type NamedDrawing = (&'static str, fn() -> String);
 
-const PICTURES: [Picture; 5] = [
+const PICTURES: [NamedDrawing; 5] = [
     ("pass-probability.svg", pass_probability::draw),
     ("tactics.svg", tactics::draw),
     ("risk-of-receiving.svg", risk::draw),

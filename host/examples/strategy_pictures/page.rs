@@ -1,19 +1,18 @@
 //! `page`: layout of the figures. Panels with a field of any league, robots, the ball, and areas of equal
 //! value.
 //!
-//! Places are given in metres of the attack frame; the figure is in px with y up (`drawing`).
+//! Places are given in metres of the attack frame; the figure is in px with y up (`figures`).
 
 use std::fmt::{Display, Write as _};
 
-use drawing::{Anchor, At, Colors, Font, Svg, Theme};
+use figures::{Anchor, At, Colors, Font, Svg, Theme, field_lines};
 use geometry::{Angle, Attack, Point};
-use host::strategy::threat::edge::Edge;
 use rules::FieldSpec;
 
 /// Font size of sans-serif text, px.
-pub(crate) const TEXT: f64 = 14.0;
-/// Around and between panels, px.
-pub(crate) const GAP: f64 = 16.0;
+pub(crate) const TEXT_SIZE_PX: f64 = 14.0;
+/// Gap around and between panels, px.
+pub(crate) const GAP_PX: f64 = 16.0;
 /// Opponents' tactics, and everything else that needs four colours that readers with any colour vision can
 /// distinguish (Okabe and Ito).
 pub(crate) const BLUE: &str = "#0072b2";
@@ -71,27 +70,14 @@ impl Panel {
 
     /// Draws lines, areas and goals.
     pub(crate) fn lines(&mut self) {
-        let style = format!(r##"fill="none" stroke="#ffffff" stroke-width="{:.1}""##, self.px(0.025));
-        let field = self.field;
-        let (x, y) = (field.length * 0.5, field.width * 0.5);
-        let mut svg = Svg::default();
-        svg.rect(self.at(Point::new(-x, -y)), self.at(Point::new(x, y)), &style);
-        svg.line(self.at(Point::new(0.0, -y)), self.at(Point::new(0.0, y)), &style);
-        svg.circle(self.at(Point::new(0.0, 0.0)), self.px(field.center_radius), &style);
-        let border: Vec<_> = Edge::of(&field, 0.0).outline(73).collect();
-        for sign in [1.0, -1.0] {
-            let area: Vec<_> =
-                border.iter().map(|p| self.at(Point::new(p.x() * sign, p.y() * sign))).collect();
-            svg.polyline(&area, style.replace(r#"fill="none" "#, ""));
-            let half = field.goal_width * 0.5;
-            let opening = [Point::new(-x * sign, -half), Point::new((-x - 0.18) * sign, half)];
-            svg.rect(
-                self.at(opening[0]),
-                self.at(opening[1]),
-                r##"fill="#ffffff" stroke="#5c5c5c" stroke-width="1.5""##,
-            );
-        }
-        self.clipped(&svg);
+        let mut field = Svg::default();
+        field_lines(&mut field, &self.field, self.colors, self.colors.line);
+        // Down is positive in SVG.
+        let [x, y] = self.at(Point::new(0.0, 0.0));
+        let px_per_mm = self.scale * 1e-3;
+        let mut placed = Svg::default();
+        placed.group(&field, format_args!(r#"transform="translate({x:.1} {:.1}) scale({px_per_mm})""#, -y));
+        self.clipped(&placed);
     }
 
     /// Parts beyond the panel are cut off.
@@ -138,7 +124,7 @@ impl Panel {
         self.svg.arrow(from, to, 11.0, color, style);
     }
 
-    /// Text with a halo, px from px.
+    /// Text at a place of the page, px.
     pub(crate) fn label(&mut self, at: At, text: &str, anchor: Anchor, size: f64, fill: &str) {
         self.svg.text(at, text, anchor, Font { size, fill, bold: false, halo: None });
     }
@@ -150,7 +136,7 @@ impl Panel {
             [x, y + up],
             text,
             anchor,
-            Font { size: TEXT - 2.0, fill: ink, bold: false, halo: Some("#ffffff") },
+            Font { size: TEXT_SIZE_PX - 2.0, fill: ink, bold: false, halo: Some("#ffffff") },
         );
     }
 
@@ -161,11 +147,11 @@ impl Panel {
             [x, y + 8.0],
             text,
             Anchor::Start,
-            Font { size: TEXT, fill: ink, bold: true, halo: None },
+            Font { size: TEXT_SIZE_PX, fill: ink, bold: true, halo: None },
         );
     }
 
-    /// Where `value` is at least `level`, filled: cells of `step` m, their borders straight between corners.
+    /// Fills the area where `value` is at least `level`: cells of `step` m, their borders straight between corners.
     pub(crate) fn area_above(
         &mut self,
         step: f32,
@@ -227,8 +213,8 @@ impl Panel {
     }
 }
 
-/// The point at distance `by` from `from` in that direction.
-pub(crate) fn off(from: Point<Attack>, direction: Angle, by: f32) -> Point<Attack> {
+/// The point at distance `by` from `from` in that direction, m.
+pub(crate) fn polar(from: Point<Attack>, direction: Angle, by: f32) -> Point<Attack> {
     from + geometry::Vector::polar(by, direction)
 }
 
@@ -244,12 +230,12 @@ pub(crate) fn finish(panels: &[&Svg], [width, height]: At, legend: &Svg, title: 
 /// Lines of text, px from the top down.
 pub(crate) fn lines_of_text(svg: &mut Svg, [x, top]: At, room: f64, text: &str) {
     let fill = Theme::Light.colors().faint;
-    for (i, line) in drawing::wrapped(text, TEXT, room).iter().enumerate() {
+    for (i, line) in figures::wrapped(text, TEXT_SIZE_PX, room).iter().enumerate() {
         svg.text(
             [x, top - 19.0 * i as f64],
             line,
             Anchor::Start,
-            Font { size: TEXT, fill, bold: false, halo: None },
+            Font { size: TEXT_SIZE_PX, fill, bold: false, halo: None },
         );
     }
 }

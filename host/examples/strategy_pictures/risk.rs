@@ -1,13 +1,13 @@
 //! `risk`: figure of the probability to receive a moving ball. Equation 6 over the field for c = 5 and 20, as
 //! the paper's Figure 6.
 
-use drawing::{Anchor, Svg};
+use figures::{Anchor, Svg};
 use geometry::{Attack, Point, Vector};
 use host::strategy::threat::ThreatSettings;
 use host::strategy::threat::receiving::{isocontour, risk_of_receiving};
 use rules::League;
 
-use crate::page::{GAP, GREEN, Panel, YELLOW, finish, lines_of_text};
+use crate::page::{GAP_PX, GREEN, Panel, YELLOW, finish, lines_of_text};
 
 /// SVG text of the figure.
 pub(crate) fn draw() -> String {
@@ -18,7 +18,7 @@ pub(crate) fn draw() -> String {
     let mut panels = Vec::new();
     let mut size = [0.0, 0.0];
     for (i, c) in [5.0, 20.0].into_iter().enumerate() {
-        let mut panel = Panel::whole(field, [GAP + i as f64 * (size[0] + GAP), 92.0], 86.0);
+        let mut panel = Panel::whole(field, [GAP_PX + i as f64 * (size[0] + GAP_PX), 92.0], 86.0);
         size = panel.size();
         let ellipse = |risk: f32| {
             let (centre, along, across) = isocontour(velocity.norm(), c, risk);
@@ -30,7 +30,7 @@ pub(crate) fn draw() -> String {
             places.collect::<Vec<_>>()
         };
         let mut bands = Svg::default();
-        for risk in RISKS {
+        for risk in RISK_LEVELS_S {
             let corners: Vec<_> = ellipse(risk).into_iter().map(|place| panel.at(place)).collect();
             bands.polygon(&corners, r##"fill="#d55e00" fill-opacity="0.16""##);
         }
@@ -60,11 +60,11 @@ pub(crate) fn draw() -> String {
         velocity.norm()
     )
     .replace(": -1 s", ": −1 s");
-    let width = 2.0 * size[0] + 3.0 * GAP;
-    lines_of_text(&mut legend, [GAP, 68.0], width - 2.0 * GAP, &text);
+    let width = 2.0 * size[0] + 3.0 * GAP_PX;
+    lines_of_text(&mut legend, [GAP_PX, 68.0], width - 2.0 * GAP_PX, &text);
     let panels: Vec<_> = panels.iter().collect();
     finish(&panels, [width, size[1] + 92.0 + 32.0], &legend, "Risk of receiving (equation 6)")
 }
 
 /// Levels of risk drawn, s.
-const RISKS: [f32; 6] = [-2.0, -1.5, -1.0, -0.75, -0.5, -0.25];
+const RISK_LEVELS_S: [f32; 6] = [-2.0, -1.5, -1.0, -0.75, -0.5, -0.25];

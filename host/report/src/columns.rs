@@ -5,29 +5,29 @@ use study::statistics::{Interval, newcombe, student, wilson};
 
 /// A column of a table.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Column {
+pub(crate) struct MeasureColumn {
     pub(crate) head: &'static str,
     pub(crate) unit: &'static str,
     pub(crate) decimals: usize,
-    pub(crate) kind: Kind,
+    pub(crate) value: ColumnValue,
 }
 
-/// Where its values come from.
+/// Source of a column's values.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Kind {
+pub(crate) enum ColumnValue {
     /// A measure that is tested.
     Measured(Measure),
     /// A number without a test.
     Described(fn(&TableRow) -> Option<f64>),
 }
 
-impl Column {
+impl MeasureColumn {
     const fn share(head: &'static str, measure: Measure) -> Self {
-        Self { head, unit: "%", decimals: 1, kind: Kind::Measured(measure) }
+        Self { head, unit: "%", decimals: 1, value: ColumnValue::Measured(measure) }
     }
 
     const fn mean(head: &'static str, unit: &'static str, measure: Measure) -> Self {
-        Self { head, unit, decimals: 2, kind: Kind::Measured(measure) }
+        Self { head, unit, decimals: 2, value: ColumnValue::Measured(measure) }
     }
 
     const fn described(
@@ -36,26 +36,26 @@ impl Column {
         decimals: usize,
         of: fn(&TableRow) -> Option<f64>,
     ) -> Self {
-        Self { head, unit, decimals, kind: Kind::Described(of) }
+        Self { head, unit, decimals, value: ColumnValue::Described(of) }
     }
 
-    /// Its value in a row.
+    /// The value of a row.
     pub(crate) fn value(&self, row: &TableRow) -> Option<f64> {
-        match self.kind {
-            Kind::Measured(measure) => measure.value(row),
-            Kind::Described(of) => of(row),
+        match self.value {
+            ColumnValue::Measured(measure) => measure.value(row),
+            ColumnValue::Described(of) => of(row),
         }
     }
 
-    /// The 95 % interval of its value, in its unit.
+    /// The 95 % interval of a row's value, in the column's unit.
     pub(crate) fn interval(&self, row: &TableRow) -> Option<Interval> {
-        let Kind::Measured(measure) = self.kind else { return None };
+        let ColumnValue::Measured(measure) = self.value else { return None };
         interval(measure, row)
     }
 
-    /// The standard deviation of its values, where that is known.
+    /// The standard deviation of a row's value, where that is known.
     pub(crate) fn spread(&self, row: &TableRow) -> Option<f64> {
-        let Kind::Measured(measure) = self.kind else { return None };
+        let ColumnValue::Measured(measure) = self.value else { return None };
         measure.sample(row)?.sd
     }
 
@@ -87,7 +87,7 @@ fn percent(Interval { low, high }: Interval) -> Option<Interval> {
 }
 
 /// The columns of a table; one without any value is left out, and timeouts where there are none.
-pub(crate) fn columns(table: u8, rows: &[&TableRow]) -> Vec<Column> {
+pub(crate) fn columns(table: u8, rows: &[&TableRow]) -> Vec<MeasureColumn> {
     let all = match table {
         1 => &TABLE_1[..],
         2 => &TABLE_2,
@@ -96,7 +96,7 @@ pub(crate) fn columns(table: u8, rows: &[&TableRow]) -> Vec<Column> {
         5 => &TABLE_5,
         _ => &TABLE_6,
     };
-    let described = |column: &&Column| {
+    let described = |column: &&MeasureColumn| {
         let least = if column.head == "timeout" && table != 4 { 0.0 } else { -1.0 };
         rows.iter().any(|row| column.value(row).is_some_and(|value| value > least))
     };
@@ -122,44 +122,45 @@ fn used(row: &TableRow) -> Option<f64> {
 /// Confidence level of the whole report.
 pub(crate) const CONFIDENCE: f64 = 0.95;
 
-const GOAL: Column = Column::share("goal", Measure::Goal);
-const CLOSE: Column = Column::share("close", Measure::Close);
-const BLOCK: Column = Column::share("block", Measure::Block);
-const OUT: Column = Column::share("out", Measure::Out);
-const TIMEOUT: Column = Column::share("timeout", Measure::Timeout);
-const TO_GOAL: Column = Column::share("to goal", Measure::ToGoal);
-const POSSESSION: Column = Column::mean("possession", "a trial", Measure::Possession);
-const MIDFIELD: Column = Column::mean("midfield's possession", "a trial", Measure::MidfieldPossession);
-const DEFENDER: Column = Column::mean("defender's possession", "a trial", Measure::Possession);
-const TIME: Column = Column::mean("time", "s", Measure::Time);
+const GOAL: MeasureColumn = MeasureColumn::share("goal", Measure::Goal);
+const CLOSE: MeasureColumn = MeasureColumn::share("close", Measure::Close);
+const BLOCK: MeasureColumn = MeasureColumn::share("block", Measure::Block);
+const OUT: MeasureColumn = MeasureColumn::share("out", Measure::Out);
+const TIMEOUT: MeasureColumn = MeasureColumn::share("timeout", Measure::Timeout);
+const TO_GOAL: MeasureColumn = MeasureColumn::share("to goal", Measure::ToGoal);
+const POSSESSION: MeasureColumn = MeasureColumn::mean("possession", "a trial", Measure::Possession);
+const MIDFIELD: MeasureColumn =
+    MeasureColumn::mean("midfield's possession", "a trial", Measure::MidfieldPossession);
+const DEFENDER: MeasureColumn = MeasureColumn::mean("defender's possession", "a trial", Measure::Possession);
+const TIME: MeasureColumn = MeasureColumn::mean("time", "s", Measure::Time);
 
-const DUELS: Column = Column::described("duels", "%", 0, |row| row.duel_time);
+const DUELS: MeasureColumn = MeasureColumn::described("duels", "%", 0, |row| row.duel_time);
 
-const TABLE_1: [Column; 9] = [GOAL, CLOSE, BLOCK, OUT, TIMEOUT, TO_GOAL, POSSESSION, TIME, DUELS];
-const TABLE_2: [Column; 3] = [
-    Column::described("A backs up", "a trial", 1, |row| row.backups_a),
-    Column::described("B backs up", "a trial", 1, |row| row.backups_b),
-    Column::described("B's share", "%", 0, share_b),
+const TABLE_1: [MeasureColumn; 9] = [GOAL, CLOSE, BLOCK, OUT, TIMEOUT, TO_GOAL, POSSESSION, TIME, DUELS];
+const TABLE_2: [MeasureColumn; 3] = [
+    MeasureColumn::described("A backs up", "a trial", 1, |row| row.backups_a),
+    MeasureColumn::described("B backs up", "a trial", 1, |row| row.backups_b),
+    MeasureColumn::described("B's share", "%", 0, share_b),
 ];
-const TABLE_3: [Column; 6] = [
-    Column::described("individual", "a trial", 1, |row| row.individual),
-    Column::described("cooperative", "a trial", 1, |row| row.cooperative),
-    Column::described("all", "a trial", 1, used),
-    Column::described("cooperative's share", "%", 0, cooperative),
-    Column::described("no case found", "a trial", 1, |row| row.none),
-    Column::described("time without a case", "%", 1, |row| row.default_time),
+const TABLE_3: [MeasureColumn; 6] = [
+    MeasureColumn::described("individual", "a trial", 1, |row| row.individual),
+    MeasureColumn::described("cooperative", "a trial", 1, |row| row.cooperative),
+    MeasureColumn::described("all", "a trial", 1, used),
+    MeasureColumn::described("cooperative's share", "%", 0, cooperative),
+    MeasureColumn::described("no case found", "a trial", 1, |row| row.none),
+    MeasureColumn::described("time without a case", "%", 1, |row| row.default_time),
 ];
-const TABLE_4: [Column; 4] = [TO_GOAL, OUT, TIMEOUT, DUELS];
-const TABLE_5: [Column; 3] = [MIDFIELD, DEFENDER, TIME];
-const TABLE_6: [Column; 10] = [
+const TABLE_4: [MeasureColumn; 4] = [TO_GOAL, OUT, TIMEOUT, DUELS];
+const TABLE_5: [MeasureColumn; 3] = [MIDFIELD, DEFENDER, TIME];
+const TABLE_6: [MeasureColumn; 10] = [
     GOAL,
     CLOSE,
     BLOCK,
     OUT,
     TIMEOUT,
     TO_GOAL,
-    Column::described("out by opponents", "trials", 0, |row| row.out_by_opponents.map(f64::from)),
-    Column::described("out by attackers", "trials", 0, |row| row.out_by_attackers.map(f64::from)),
+    MeasureColumn::described("out by opponents", "trials", 0, |row| row.out_by_opponents.map(f64::from)),
+    MeasureColumn::described("out by attackers", "trials", 0, |row| row.out_by_attackers.map(f64::from)),
     POSSESSION,
     DUELS,
 ];

@@ -1,5 +1,4 @@
-//! `facts`: provenance of an evaluation. All provenance in the evaluation's files, by name and value, nothing
-//! left out.
+//! `facts`: provenance of an evaluation, by name and value, all that its files record.
 
 use serde_json::Value;
 use study::evaluation::Identity;
@@ -27,7 +26,7 @@ impl Facts {
                     rest.push(facts);
                 }
                 (None, Value::Array(names)) => {
-                    first.entries.push((name.clone(), format!("{}: {}", names.len(), description(names))));
+                    first.entries.push((name.clone(), format!("{}: {}", names.len(), joined(names))));
                 }
                 (None, value) => flatten(name, value, &mut first.entries),
             }
@@ -52,7 +51,7 @@ fn heading(name: &str) -> Option<&'static str> {
     }
 }
 
-fn description(values: &[Value]) -> String {
+fn joined(values: &[Value]) -> String {
     values.iter().map(label).collect::<Vec<_>>().join(", ")
 }
 
@@ -70,15 +69,15 @@ fn flatten(name: &str, value: &Value, entries: &mut Vec<(String, String)>) {
                 match part {
                     // One line for each element: its members belong together.
                     Value::Object(part) => {
-                        let verdict_text: Vec<_> =
+                        let members: Vec<_> =
                             part.iter().map(|(key, value)| format!("{key} {}", label(value))).collect();
-                        entries.push((below(&(i + 1).to_string()), verdict_text.join(", ")));
+                        entries.push((below(&(i + 1).to_string()), members.join(", ")));
                     }
                     part => flatten(&below(&(i + 1).to_string()), part, entries),
                 }
             }
         }
-        Value::Array(parts) => entries.push((name.to_owned(), description(parts))),
+        Value::Array(parts) => entries.push((name.to_owned(), joined(parts))),
         value => entries.push((name.to_owned(), label(value))),
     }
 }
@@ -90,15 +89,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn everything_down_to_the_leaves_is_said() {
+    fn nested_values_are_listed_down_to_the_leaves() {
         let mut entries = Vec::new();
         let value = json!({"a": 1.5, "b": {"c": "x", "d": [1, 2]}, "e": [{"f": "1", "g": 2}], "h": null});
         flatten("", &value, &mut entries);
-        let verdict_text: Vec<_> =
-            entries.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
-        assert_eq!(
-            verdict_text,
-            [("a", "1.5"), ("b.c", "x"), ("b.d", "1, 2"), ("e.1", "f 1, g 2"), ("h", "null")]
-        );
+        let texts: Vec<_> = entries.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+        assert_eq!(texts, [("a", "1.5"), ("b.c", "x"), ("b.d", "1, 2"), ("e.1", "f 1, g 2"), ("h", "null")]);
     }
 }

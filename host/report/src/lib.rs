@@ -2,9 +2,9 @@
 //! of the documentation. Runs on the PC.
 //!
 //! ```text
-//! tables, paper, comparisons, claims, facts ─┬─► html()      one file: no network, no scripts; light, dark, paper
-//! Mapper: trials played again ─► Map ────────┼─► pictures()  the same plots and maps, one SVG each
-//!                                            └─► markdown()  docs/results/evaluation.md, between its markers
+//! tables, paper, comparisons, claims, facts ─┬─► html()         one file: no network, no scripts; light, dark, paper
+//! Mapper: trials played again ─► Map ────────┼─► figure_files() the same plots and maps, one SVG each
+//!                                            └─► markdown()     docs/evaluation.md, between its markers
 //! ```
 //! Numbers come from `study::evaluation` and are printed, never changed: what a table prints is rounded for
 //! the reader, and every interval and p stands beside its number.
@@ -12,14 +12,12 @@
 
 mod ablation;
 mod columns;
-mod description;
 mod facts;
+mod labels;
 mod map;
 mod markdown;
-mod numbers;
 mod page;
 mod plot;
-mod style;
 mod table;
 
 use std::fs;
@@ -27,10 +25,11 @@ use std::io;
 use std::path::Path;
 
 use study::evaluation::{CaseUse, Claim, Comparison, JudgementLine, TableRow};
+use figures::FigureFile;
 
 pub use ablation::Ablation;
 pub use facts::Facts;
-pub use map::{EDGE, Map, MapError, Mapper, Pass, PassKind};
+pub use map::{Map, MapError, Mapper, Pass, PassKind, SQUARE_MM};
 pub use markdown::{MarkerError, between_markers};
 
 /// Inputs of a report.
@@ -50,50 +49,45 @@ pub struct Report<'a> {
     pub uses: &'a [CaseUse],
     /// The paper's claims in prose, and whether the numbers support them.
     pub claims: &'a [Claim],
-    /// Whether the pattern of its results is reproduced.
+    /// Lines of the pattern of the paper's results, each with its verdict.
     pub lines: &'a [JudgementLine],
     /// All settings that the trials depend on: parameters, options, hashes, commit.
     pub facts: &'a [Facts],
-    /// Where the ball was and the passes between robots, one a cell.
+    /// Places of the ball and passes between robots, a map a cell.
     pub maps: &'a [Map],
-}
-
-/// A figure with the name of its file, without an extension.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Picture {
-    /// Name such as `table-1-outcomes`, unique in the report.
-    pub name: String,
-    /// The figure as SVG.
-    pub svg: String,
 }
 
 impl Report<'_> {
     /// The whole report in one file.
     pub fn html(&self) -> String {
-        page::page(self).into_string()
+        page::page(self)
     }
 
     /// All figures: plots first, then maps.
-    pub fn pictures(&self) -> Vec<Picture> {
-        let plots = plot::figures(self).into_iter().map(|figure| figure.picture());
+    pub fn figure_files(&self) -> Vec<FigureFile> {
+        let plots = plot::plots(self).into_iter().map(|(_, figure)| figure.file());
         plots.chain(map::sheets(self.maps)).collect()
     }
 
-    /// Tables and claims for the documentation; figures are named relative to `pictures`, for example
-    /// `pictures/`.
-    pub fn markdown(&self, pictures: &str) -> String {
-        markdown::markdown(self, pictures)
+    /// Tables and claims for the documentation; figures are named relative to `figures_directory`, for
+    /// example `evaluation/`.
+    pub fn markdown(&self, figures_directory: &str) -> String {
+        markdown::markdown(self, figures_directory)
     }
 
     /// `report.html` and `plots/*.svg` under `directory`; returns the figures.
-    pub fn write(&self, directory: &Path) -> io::Result<Vec<Picture>> {
-        let plots = directory.join("plots");
-        fs::create_dir_all(&plots)?;
-        let pictures = self.pictures();
-        for picture in &pictures {
-            fs::write(plots.join(format!("{}.svg", picture.name)), &picture.svg)?;
-        }
-        fs::write(directory.join("report.html"), self.html())?;
-        Ok(pictures)
+    pub fn write(&self, directory: &Path) -> io::Result<Vec<FigureFile>> {
+        write_page(directory, &self.html(), self.figure_files())
     }
+}
+
+/// Writes `report.html` and `plots/*.svg` under `directory`; returns the figures.
+fn write_page(directory: &Path, html: &str, files: Vec<FigureFile>) -> io::Result<Vec<FigureFile>> {
+    let plots = directory.join("plots");
+    fs::create_dir_all(&plots)?;
+    for file in &files {
+        fs::write(plots.join(format!("{}.svg", file.name)), &file.svg)?;
+    }
+    fs::write(directory.join("report.html"), html)?;
+    Ok(files)
 }

@@ -1,166 +1,151 @@
-//! `markdown`: the report's part of the documentation. The tables in few columns, the claims, the figures;
+//! `markdown`: the report's part of the documentation: tables in few columns, claims, figures; and its place
 //! between two markers of a file.
 
-use std::fmt;
 use std::fmt::Write as _;
+use std::iter::Peekable;
+use std::slice;
 
 use study::evaluation::{Claim, Judgement, JudgementLine};
+use figures::{Cell, Column, Figure, Row, Table, row};
 
 use crate::facts::HASH;
-use crate::table::{Cell, LineKind, Table, tables};
-use crate::{Report, description, map, table};
+use crate::table::{Line, LineKind, PaperTable, tables};
+use crate::{Report, labels, map};
 
-/// Tables, claims and figures as Markdown.
-pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
+/// Tables, claims and figures as Markdown; figures lie in the directory `figures_directory`, with a slash at
+/// its end.
+pub(crate) fn markdown(report: &Report<'_>, figures_directory: &str) -> String {
     let mut text = String::new();
     let facts = || report.facts.iter().flat_map(|facts| &facts.entries);
     let known =
         [("program", "onetwo"), ("plan.seed", "seed"), ("seed", "seed"), ("world", "world"), (HASH, HASH)];
-    let verdict_text = known.into_iter().filter_map(|(name, label)| {
+    let provenance = known.into_iter().filter_map(|(name, label)| {
         let (_, value) = facts().find(|(own, _)| own == name)?;
         Some(format!("{label} {value}"))
     });
-    let verdict_text: Vec<_> = verdict_text.collect();
-    if !verdict_text.is_empty() {
-        let _ = writeln!(text, "Played by {}.\n", verdict_text.join(", "));
+    let provenance: Vec<_> = provenance.collect();
+    // Writing to a String cannot fail.
+    if !provenance.is_empty() {
+        let _ = writeln!(text, "Played by {}.\n", provenance.join(", "));
     }
-    let figures = crate::plot::figures(report);
-    for figure in figures.iter().filter(|figure| figure.table == 0) {
-        let _ = writeln!(text, "![{}]({pictures}{}.svg)\n", figure.title, figure.name);
+    let plots = crate::plot::plots(report);
+    for (_, figure) in plots.iter().filter(|(table, _)| *table == 0) {
+        text += &image(figure, figures_directory);
     }
     for table in tables(report) {
         let number = table.number;
-        let _ = writeln!(text, "### Table {number}: {}\n", description::table(number));
+        let _ = writeln!(text, "### Table {number}: {}\n", labels::table(number));
         let world = facts().find(|(name, _)| name == "world").map(|(_, world)| format!(" World {world}."));
-        let _ = writeln!(text, "{}{}\n", description::note(number), world.unwrap_or_default());
-        own(&mut text, &table);
-        against(&mut text, &table);
-        for figure in figures.iter().filter(|figure| figure.table == number) {
-            let _ = writeln!(text, "![{}]({pictures}{}.svg)\n", figure.title, figure.name);
+        let _ = writeln!(text, "{}{}\n", labels::note(number), world.unwrap_or_default());
+        for part in [Some(own(&table)), against(&table)].into_iter().flatten() {
+            let _ = writeln!(text, "{}", part.markdown());
+        }
+        for (_, figure) in plots.iter().filter(|(table, _)| *table == number) {
+            text += &image(figure, figures_directory);
         }
     }
-    for picture in
-        map::sheets(report.maps).into_iter().filter(|picture| INCLUDED.contains(&picture.name.as_str()))
-    {
-        let _ = writeln!(text, "![Passes and ends; where the ball was]({pictures}{}.svg)\n", picture.name);
+    for file in map::sheets(report.maps).iter().filter(|file| INCLUDED_MAPS.contains(&file.name.as_str())) {
+        let _ =
+            writeln!(text, "![Passes and ends; where the ball was]({figures_directory}{}.svg)\n", file.name);
     }
     if !report.claims.is_empty() {
-        claims(&mut text, report.claims);
+        let _ =
+            writeln!(text, "### What the paper says, and what the numbers say\n\n{}", claims(report.claims));
     }
     if !report.lines.is_empty() {
-        lines(&mut text, report.lines);
+        let title = "### The pattern of its results, and what is asked of ours";
+        let _ = writeln!(text, "{title}\n\n{}", pattern(report.lines));
     }
     text
 }
 
-/// Ours, the paper's in italics behind it.
-fn own(text: &mut String, table: &Table) {
-    let heads = table.columns.iter().map(|column| format!("{} ({})", column.head, column.unit));
-    head(text, &["scenario", "attackers", "trials"], heads);
+fn image(figure: &Figure, directory: &str) -> String {
+    format!("![{}]({directory}{}.svg)\n\n", figure.title, figure.name)
+}
+
+/// Columns with these names of rows, then a table's measures.
+fn columns(names: &[&str], table: &PaperTable) -> Vec<Column> {
+    let names = names.iter().map(|name| Column::name(name));
+    names.chain(table.columns.iter().map(|column| Column::number(column.head, column.unit))).collect()
+}
+
+/// Our numbers, with the paper's beside them.
+fn own(table: &PaperTable) -> Table {
+    let mut own = Table::new(columns(&["scenario", "attackers", "trials"], table));
     for block in &table.blocks {
         let mut lines = block.lines.iter().peekable();
         while let Some(line) = lines.next() {
             let LineKind::Ours(trials) = line.kind else { continue };
             let paper = lines.next_if(|line| matches!(line.kind, LineKind::Paper(_)));
             let less = lines.next_if(|line| line.kind == LineKind::Difference);
-            let scenario = description::scenario(block.scenario);
-            let _ = write!(text, "| {scenario} | {} | {trials} |", description::approach(line.approach));
-            for (i, cell) in line.cells.iter().enumerate() {
-                let printed = paper.and_then(|line| line.cells.get(i)).filter(|cell| !cell.value.is_empty());
-                let printed = printed.map_or(String::new(), |cell| format!(" *{}*", cell.value));
+            let cells = line.cells.iter().enumerate().map(|(i, cell)| {
                 let marks = less.and_then(|line| line.cells.get(i)).map_or("", |cell| cell.marks);
-                let _ = write!(text, " {}{}{printed} |", cell.value, escaped(marks));
-            }
-            text.push('\n');
+                let printed = paper.and_then(|line| line.cells[i].value.clone());
+                Cell { value: cell.value.clone(), marks, ..Cell::GAP }.beside(printed.unwrap_or_default())
+            });
+            let row = row![labels::scenario(block.scenario), labels::approach(line.approach), trials];
+            own.push(row.with(cells));
         }
     }
-    text.push('\n');
+    own
 }
 
-/// One approach less another, the paper's in italics behind it.
-fn against(text: &mut String, table: &Table) {
-    let pair = |line: &&table::Line| matches!(line.kind, LineKind::Against(..));
-    let tested = |line: &table::Line| line.cells.iter().any(|cell| !cell.beside.is_empty());
-    if !table.blocks.iter().flat_map(|block| &block.lines).filter(pair).any(tested) {
-        return;
-    }
-    let heads = table.columns.iter().map(|column| format!("{} ({})", column.head, column.unit));
-    head(text, &["scenario", "difference", "trials"], heads);
+/// One approach less another, with the paper's difference beside; `None` where nothing is tested.
+fn against(table: &PaperTable) -> Option<Table> {
+    let mut against = Table::new(columns(&["scenario", "difference", "trials"], table));
+    let mut is_tested = false;
     for block in &table.blocks {
         let mut lines = block.lines.iter().peekable();
         while let Some(line) = lines.next() {
-            if !pair(&line) {
+            if !matches!(line.kind, LineKind::Against(..)) {
                 continue;
             }
+            is_tested |= line.cells.iter().any(|cell| !cell.detail.is_empty());
             let trials = line.trials().unwrap_or_default();
-            let paper = lines.next_if(|line| matches!(line.kind, LineKind::PaperAgainst(_)));
-            let _ =
-                write!(text, "| {} | {} | {trials} |", description::scenario(block.scenario), line.label());
-            let both = |cell: &Cell| format!("{}{}", cell.value, escaped(cell.marks));
-            for (i, cell) in line.cells.iter().enumerate() {
-                let printed = paper.and_then(|line| line.cells.get(i)).filter(|cell| !cell.value.is_empty());
-                let printed = printed.map_or(String::new(), |cell| format!(" *{}*", both(cell)));
-                let _ = write!(text, " {}{printed} |", both(cell));
-            }
-            text.push('\n');
+            let row = row![labels::scenario(block.scenario), line.label(), trials];
+            against.push(row.with(with_papers(line, &mut lines)));
         }
     }
-    text.push('\n');
+    is_tested.then_some(against)
 }
 
-fn claims(text: &mut String, claims: &[Claim]) {
-    text.push_str("### What the paper says, and what the numbers say\n\n");
-    text.push_str("| § | claim | our trials | the paper’s own tables |\n|---|---|---|---|\n");
-    for Claim { section, sentence, ours, ours_as_paper, paper, .. } in claims {
-        let few =
-            ours_as_paper.as_ref().map(|few| format!(" (its first 30 trials: {})", few.verdict.label()));
-        let (claim, few) = (cell(sentence), few.unwrap_or_default());
-        let _ =
-            writeln!(text, "| {section} | {claim} | {}{few} | {} |", verdict_text(ours), verdict_text(paper));
+/// The cells of a line of ours; beside them the paper's, if its line follows.
+fn with_papers(line: &Line, lines: &mut Peekable<slice::Iter<'_, Line>>) -> Vec<Cell> {
+    let paper = lines.next_if(|line| matches!(line.kind, LineKind::PaperAgainst(_)));
+    let mut cells = Vec::new();
+    for (i, cell) in line.cells.iter().enumerate() {
+        let printed = paper.and_then(|line| {
+            let Cell { value, marks, .. } = &line.cells[i];
+            value.as_ref().map(|value| format!("{value}{marks}"))
+        });
+        let own = Cell { value: cell.value.clone(), marks: cell.marks, ..Cell::GAP };
+        cells.push(own.beside(printed.unwrap_or_default()));
     }
-    text.push('\n');
+    cells
 }
 
-fn verdict_text(judgement: &Judgement) -> String {
-    let label = judgement.verdict.label();
-    if judgement.evidence.is_empty() {
-        return format!("**{label}**");
-    }
-    format!("**{label}**: {}", cell(&judgement.evidence))
+fn claims(claims: &[Claim]) -> String {
+    let table = Table::of_texts("§ | claim | our trials | the paper’s own tables");
+    let rows = claims.iter().map(|Claim { section, sentence, ours, ours_as_paper, paper, .. }| {
+        let few = ours_as_paper.as_ref();
+        let few = few.map(|few| format!(" (its first 30 trials: {})", few.verdict.label()));
+        row![section, sentence, verdict(ours, &few.unwrap_or_default()), verdict(paper, "")]
+    });
+    table.with_rows(rows).markdown()
 }
 
-fn lines(text: &mut String, lines: &[JudgementLine]) {
-    text.push_str("### The pattern of its results, and what is asked of ours\n\n");
-    text.push_str("| | line | | the numbers |\n|---|---|---|---|\n");
-    for JudgementLine { id, line, verdict, evidence } in lines {
-        let _ = writeln!(text, "| {id} | {} | **{}** | {} |", cell(line), verdict.label(), cell(evidence));
-    }
-    text.push('\n');
+/// The verdict with its evidence, and what follows it.
+fn verdict(judgement: &Judgement, rest: &str) -> Cell {
+    let Judgement { verdict, evidence, .. } = judgement;
+    let colon = if evidence.is_empty() { "" } else { ": " };
+    Cell::verdict(verdict.label(), format!("{colon}{evidence}{rest}"))
 }
 
-/// Text that stays in its cell.
-fn cell(description: &str) -> String {
-    description.replace('|', "\\|").replace('*', "\\*").replace('\n', " ")
-}
-
-/// A row of heads, the first ones to the left, numbers to the right.
-fn head(text: &mut String, names: &[&str], numbers: impl Iterator<Item = String> + Clone) {
-    for name in names.iter().map(ToString::to_string).chain(numbers.clone()) {
-        let _ = write!(text, "| {name} ");
-    }
-    text.push_str("|\n");
-    for _ in names {
-        text.push_str("|---");
-    }
-    for _ in numbers {
-        text.push_str("|---:");
-    }
-    text.push_str("|\n");
-}
-
-/// Asterisks escaped for Markdown.
-fn escaped(marks: &str) -> String {
-    marks.replace('*', "\\*")
+fn pattern(lines: &[JudgementLine]) -> String {
+    let rows = lines.iter().map(|JudgementLine { id, line, verdict, evidence }| -> Row {
+        row![id, line, Cell::verdict(verdict.label(), ""), evidence]
+    });
+    Table::of_texts(" | line |  | the numbers").with_rows(rows).markdown()
 }
 
 /// Replaces everything between the markers of `name` in `text`: `<!-- NAME: written by `cargo xtask CHORE`
@@ -178,33 +163,25 @@ fn markers(task: &str, name: &str) -> (String, String) {
 }
 
 /// A file lacks a marker.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MarkerError {
     /// The file has no such marker line.
+    #[error("there is no line `{marker}`; figures stand between two such lines")]
     Missing {
         /// The whole line that is missing.
         marker: String,
     },
 }
 
-impl fmt::Display for MarkerError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self::Missing { marker } = self;
-        write!(f, "there is no line `{marker}`; figures stand between two such lines")
-    }
-}
-
-impl std::error::Error for MarkerError {}
-
 /// Maps in the documentation: the scenarios that the paper describes play by play (§5.3).
-const INCLUDED: [&str; 2] = ["maps-dg-3", "maps-dg-4"];
+const INCLUDED_MAPS: [&str; 2] = ["maps-dg-3", "maps-dg-4"];
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn only_what_stands_between_the_markers_is_replaced() {
+    fn only_the_text_between_the_markers_is_replaced() {
         let (begin, end) = markers("evaluation", "figures");
         let text = format!("before\n{begin}\nold\n{end}\nafter\n");
         let once = between_markers(&text, "evaluation", "figures", "new\n").unwrap();

@@ -1,72 +1,83 @@
-//! `page`: layout of the report page. At a glance, the claims, tables with their plots, maps, every
-//! comparison, every parameter.
+//! `page`: layout of the report page: at a glance, the claims, tables with their plots, maps, every comparison,
+//! every parameter.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use study::statistics::stars;
 use study::evaluation::{Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine};
+use figures::numbers::{plain, signed};
+use figures::{Cell, Column, Page, Row, Table, Theme, dark_colors, row};
+use maud::{Markup, html};
 
-use crate::plot::{Figure, figures};
+use crate::map::{CHANCE_PASS_COLOR, LOST_PASS_COLOR, SHADES};
+use crate::plot::{TablePlot, plots};
 use crate::table::tables;
-use crate::{Facts, Report, description, map, numbers, style};
+use crate::{Facts, Report, labels, map};
 
 /// The whole page.
-pub(crate) fn page(report: &Report<'_>) -> Markup {
-    let (figures, tables) = (figures(report), tables(report));
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { (TITLE) }
-                style { (PreEscaped(style::sheet())) }
-            }
-            body {
-                header {
-                    h1 { (TITLE) }
-                    p.lead { (lead(report)) }
-                    nav {
-                        a href="#glance" { "At a glance" }
-                        @if !report.claims.is_empty() { a href="#claims" { "Claims" } }
-                        @if !report.lines.is_empty() { a href="#pattern" { "Pattern" } }
-                        @for table in &tables { a href={ "#table-" (table.number) } { "Table " (table.number) } }
-                        @if !report.maps.is_empty() { a href="#maps" { "Maps" } }
-                        a href="#comparisons" { "Comparisons" }
-                        a href="#facts" { "Parameters" }
-                    }
-                }
-                main {
-                    section id="glance" {
-                        h2 { "At a glance" }
-                        p.note { (GLANCE) }
-                        (plots(&figures, 0))
-                    }
-                    @if !report.claims.is_empty() { (claims(report.claims)) }
-                    @if !report.lines.is_empty() { (pattern(report.lines)) }
-                    @for table in &tables {
-                        section id={ "table-" (table.number) } {
-                            h2 { "Table " (table.number) ": " (description::table(table.number)) }
-                            p.note { (description::note(table.number)) }
-                            (table.html())
-                            (plots(&figures, table.number))
-                        }
-                    }
-                    @if !report.maps.is_empty() {
-                        section id="maps" {
-                            h2 { "Where the ball was" }
-                            p.note { (MAPS) }
-                            (map::html(report.maps))
-                        }
-                    }
-                    (comparisons(report))
-                    section id="facts" { h2 { "What decided the trials" } (facts(report.facts)) }
-                }
+pub(crate) fn page(report: &Report<'_>) -> String {
+    let (plots, tables) = (plots(report), tables(report));
+    let header = html! {
+        p.lead { (lead(report)) }
+        nav {
+            a href="#glance" { "At a glance" }
+            @if !report.claims.is_empty() { a href="#claims" { "Claims" } }
+            @if !report.lines.is_empty() { a href="#pattern" { "Pattern" } }
+            @for table in &tables { a href={ "#table-" (table.number) } { "Table " (table.number) } }
+            @if !report.maps.is_empty() { a href="#maps" { "Maps" } }
+            a href="#comparisons" { "Comparisons" }
+            a href="#facts" { "Parameters" }
+        }
+    };
+    let main = html! {
+        section id="glance" {
+            h2 { "At a glance" }
+            p.note { (GLANCE) }
+            (plots_of(&plots, 0))
+        }
+        @if !report.claims.is_empty() { (claims(report.claims)) }
+        @if !report.lines.is_empty() { (pattern(report.lines)) }
+        @for table in &tables {
+            section id={ "table-" (table.number) } {
+                h2 { "Table " (table.number) ": " (labels::table(table.number)) }
+                p.note { (labels::note(table.number)) }
+                (table.html())
+                (plots_of(&plots, table.number))
             }
         }
-    }
+        @if !report.maps.is_empty() {
+            section id="maps" {
+                h2 { "Where the ball was" }
+                p.note { (MAPS) }
+                (map::html(report.maps))
+            }
+        }
+        (comparisons(report))
+        (facts(report.facts))
+    };
+    Page { title: TITLE, style: style(), header, main }.html()
 }
 
-/// What was played, in a sentence.
+/// Rules of style of the report's pages, and the dark colours of its own figures.
+pub(crate) fn style() -> String {
+    // A field's lines are white on a light field surface, as the paper is.
+    let [light, dark] = [Theme::Light, Theme::Dark].map(|theme| theme.colors().line);
+    format!(
+        "{}@media screen and (prefers-color-scheme: dark) {{\n.maps svg [stroke=\"{light}\"]{{stroke:{dark}}}\n}}\n{}",
+        dark_colors(&color_pairs()),
+        include_str!("report.css")
+    )
+}
+
+/// Colours of the report's figures on a light page and on a dark one, beside those of every figure.
+fn color_pairs() -> Vec<(&'static str, &'static str)> {
+    // The scale is reversed: on a dark page more is brighter.
+    let mut pairs: Vec<_> = SHADES.into_iter().zip(SHADES.into_iter().rev()).collect();
+    // Greys keep the contrast to the page that they have on white.
+    pairs.extend([("#8c8c8c", "#7d8488"), ("#c4c4c4", "#4a5156")]);
+    pairs.extend([(LOST_PASS_COLOR, "#ff7cc0"), (CHANCE_PASS_COLOR, "#79b3f2")]);
+    pairs
+}
+
+/// Sentence on the trials that were played.
 fn lead(report: &Report<'_>) -> String {
     // Tables 2, 3 and 5 share the trials of other tables.
     let of =
@@ -80,8 +91,8 @@ fn lead(report: &Report<'_>) -> String {
     )
 }
 
-fn plots(figures: &[Figure], table: u8) -> Markup {
-    html! { @for figure in figures.iter().filter(|figure| figure.table == table) { (figure.html()) } }
+fn plots_of(plots: &[TablePlot], table: u8) -> Markup {
+    html! { @for (_, figure) in plots.iter().filter(|(own, _)| *own == table) { (figure.html()) } }
 }
 
 fn claims(claims: &[Claim]) -> Markup {
@@ -137,10 +148,10 @@ fn judgement(judgement: &Judgement) -> Markup {
 
 /// The verdict; its numbers on demand, because they are many.
 fn verdict(sign: &str, label: &str, evidence: &str) -> Markup {
-    let verdict_text = html! { span class={ "verdict " (label) } { (sign) " " (label) } };
+    let verdict = html! { span class={ "verdict " (label) } { (sign) " " (label) } };
     html! {
-        @if evidence.is_empty() { (verdict_text) } @else {
-            details { summary { (verdict_text) } small { (evidence) } }
+        @if evidence.is_empty() { (verdict) } @else {
+            details { summary { (verdict) } small { (evidence) } }
         }
     }
 }
@@ -185,41 +196,49 @@ fn comparisons(report: &Report<'_>) -> Markup {
 }
 
 fn listed(comparisons: &[Comparison]) -> Markup {
-    let p = |p: Option<f64>| p.map_or(String::new(), |p| format!("{p:.2e}"));
+    let labels = ["table", "scenario", "first", "second", "measure"].map(Column::text);
+    let numbers =
+        ["first", "second", "difference", "z or t", "p", "p, Holm"].map(|head| Column::number(head, ""));
+    let rows = comparisons.iter().map(|c| {
+        row![
+            c.table,
+            c.scenario.label(),
+            labels::approach(c.first_approach),
+            labels::approach(c.second_approach),
+            c.measure.label(),
+            plain(c.first, 2),
+            plain(c.second, 2),
+            signed(c.first - c.second, 2),
+            c.test.map_or(String::new(), |test| plain(test.statistic, 2)),
+            scientific(c.test.map(|test| test.p)),
+            Cell::marked(scientific(c.p_holm), stars(c.p_holm)),
+        ]
+    });
+    Table::new(labels.into_iter().chain(numbers)).with_rows(rows).html("Comparisons", "listed")
+}
+
+/// A probability such as `3.40e-2`; empty where there is none.
+fn scientific(p: Option<f64>) -> String {
+    p.map_or(String::new(), |p| format!("{p:.2e}"))
+}
+
+/// The section of names and values under their headings.
+pub(crate) fn facts(facts: &[Facts]) -> Markup {
     html! {
-        div.scroll tabindex="0" role="region" aria-label="Comparisons" { table.listed {
-            thead { tr {
-                @for head in ["table", "scenario", "first", "second", "measure"] { th.label scope="col" { (head) } }
-                @for head in ["first", "second", "difference", "z or t", "p", "p, Holm"] { th scope="col" { (head) } }
-            } }
-            tbody { @for c in comparisons { tr {
-                td.label { (c.table) }
-                td.label { (c.scenario.label()) }
-                td.label { (description::approach(c.first_approach)) }
-                td.label { (description::approach(c.second_approach)) }
-                td.label { (c.measure.label()) }
-                td { (numbers::plain(c.first, 2)) }
-                td { (numbers::plain(c.second, 2)) }
-                td { (numbers::signed(c.first - c.second, 2)) }
-                td { (c.test.map_or(String::new(), |test| numbers::plain(test.statistic, 2))) }
-                td { (p(c.test.map(|test| test.p))) }
-                td { (p(c.p_holm)) sup { (c.p_holm.map_or("", numbers::marks)) } }
-            } } }
-        } }
+        section id="facts" {
+            h2 { "What decided the trials" }
+            p.note { "The same commit, options and seed play the same trials, to the bit." }
+            @for facts in facts {
+                h3 { (facts.title) }
+                (entries(facts).html(&facts.title, "facts"))
+            }
+        }
     }
 }
 
-/// Names and values under their headings.
-pub(crate) fn facts(facts: &[Facts]) -> Markup {
-    html! {
-        p.note { "The same commit, options and seed play the same trials, to the bit." }
-        @for facts in facts {
-            h3 { (facts.title) }
-            div.scroll tabindex="0" role="region" aria-label=(facts.title) { table.facts { tbody {
-                @for (name, value) in &facts.entries { tr { th scope="row" { (name) } td { (value) } } }
-            } } }
-        }
-    }
+fn entries(facts: &Facts) -> Table {
+    let rows = facts.entries.iter().map(|(name, value)| -> Row { row![name, value] });
+    Table::new([Column::name(""), Column::text("")]).with_rows(rows)
 }
 
 const TITLE: &str = "Case-based and reactive attackers: the paper’s tables, and ours";
@@ -234,3 +253,18 @@ const MAPS: &str = "The first trials of each cell, played again and watched. The
      the team gets it; a kick that was no pass but came to a teammate is the paper’s pass by chance (§5).";
 const COMPARISONS: &str = "Shares by the pooled z test, means by Welch’s t, two-sided. Holm’s correction over the scenarios 1 to 4 of a table \
      and measure. * below 0.05, ** below 0.01, *** below 0.001, after correction, here and in the tables.";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_colour_has_one_dark_one() {
+        let mut light: Vec<_> =
+            figures::palette().into_iter().chain(color_pairs()).map(|(light, _)| light).collect();
+        let all = light.len();
+        light.sort_unstable();
+        light.dedup();
+        assert_eq!(light.len(), all, "a colour with two dark ones");
+    }
+}

@@ -1,38 +1,42 @@
-//! `table`: lines of the report's tables. Ours, the paper's, their difference; then one approach against
+//! `table`: the paper's tables beside ours: our rows, the paper's, their difference; then one approach against
 //! another.
 //!
-//! The same model becomes HTML here and Markdown in `markdown`. A difference carries Holm's p over the
+//! The same lines become HTML here and Markdown in `markdown`. A difference carries Holm's p over the
 //! scenarios of its table.
 
+use study::statistics::stars;
+use study::evaluation::{Comparison, TableRow};
 use brain::Approach;
+use figures::numbers::{p, plain, printed, signed};
+use figures::{Cell, Column, Row, Table};
 use hil_sim::Scenario;
 use maud::{Markup, html};
-use study::evaluation::{Comparison, TableRow};
 
-use crate::columns::{Column, Kind, columns};
-use crate::{Report, description, numbers};
+use crate::columns::{ColumnValue, MeasureColumn, columns};
+use crate::{Report, labels};
 
 /// One of the paper's tables, beside ours.
 #[derive(Debug)]
-pub(crate) struct Table {
+pub(crate) struct PaperTable {
     pub(crate) number: u8,
-    pub(crate) columns: Vec<Column>,
+    pub(crate) columns: Vec<MeasureColumn>,
     pub(crate) blocks: Vec<Block>,
 }
 
-/// A scenario of it.
+/// The lines of a scenario.
 #[derive(Debug)]
 pub(crate) struct Block {
     pub(crate) scenario: Scenario,
     pub(crate) lines: Vec<Line>,
 }
 
-/// A line of it.
+/// A line of a block.
 #[derive(Debug)]
 pub(crate) struct Line {
     pub(crate) kind: LineKind,
-    /// Its approach; of two, the first.
+    /// The approach of the numbers; of two, the first.
     pub(crate) approach: Approach,
+    /// Value and stars; as detail its interval, spread or p.
     pub(crate) cells: Vec<Cell>,
 }
 
@@ -51,70 +55,44 @@ pub(crate) enum LineKind {
     PaperAgainst(Approach),
 }
 
-/// Contents of a table's cell.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Cell {
-    /// The number.
-    pub(crate) value: String,
-    /// Stars of its p.
-    pub(crate) marks: &'static str,
-    /// Its interval, spread or p.
-    pub(crate) beside: String,
-    /// Number of decimals that it has less than its neighbours.
-    lacks: usize,
-}
-
 /// All tables that have rows of ours.
-pub(crate) fn tables(report: &Report<'_>) -> Vec<Table> {
-    (1..=6).filter_map(|number| Table::new(number, report)).collect()
+pub(crate) fn tables(report: &Report<'_>) -> Vec<PaperTable> {
+    (1..=6).filter_map(|number| PaperTable::new(number, report)).collect()
 }
 
-impl Table {
+impl PaperTable {
     fn new(number: u8, report: &Report<'_>) -> Option<Self> {
         let ours: Vec<_> = report.rows.iter().filter(|row| row.table == number).collect();
         let paper: Vec<_> = report.paper.iter().filter(|row| row.table == number).collect();
         let all: Vec<_> = ours.iter().chain(&paper).copied().collect();
         let columns = columns(number, &all);
-        let mut scenarios: Vec<Scenario> = Vec::new();
+        let mut blocks: Vec<Block> = Vec::new();
         for row in &ours {
-            if !scenarios.contains(&row.scenario) {
-                scenarios.push(row.scenario);
+            let scenario = row.scenario;
+            if blocks.iter().any(|block| block.scenario == scenario) {
+                continue;
             }
+            let [ours, paper] = [&ours, &paper].map(|rows| of_scenario(rows, scenario));
+            let source = Source { report, ours, paper };
+            blocks.push(Block { scenario, lines: source.lines(number, scenario, &columns) });
         }
-        let of = |rows: &[&TableRow], scenario| -> Vec<TableRow> {
-            rows.iter().filter(|row| row.scenario == scenario).map(|row| (*row).clone()).collect()
-        };
-        let blocks = scenarios.into_iter().map(|scenario| {
-            let source = Source { report, ours: of(&ours, scenario), paper: of(&paper, scenario) };
-            Block { scenario, lines: source.lines(number, scenario, &columns) }
-        });
-        let blocks: Vec<_> = blocks.collect();
         (!blocks.is_empty()).then_some(Self { number, columns, blocks })
     }
 
-    /// As HTML.
+    /// The table as HTML.
     pub(crate) fn html(&self) -> Markup {
-        html! {
-            div.scroll tabindex="0" role="region" aria-label={ "Table " (self.number) } {
-                table {
-                    thead { tr {
-                        th.name scope="col" { "scenario, attackers" }
-                        @for column in &self.columns {
-                            th scope="col" { (column.head) span.unit { (column.unit) } }
-                        }
-                    } }
-                    @for block in &self.blocks {
-                        tbody {
-                            tr.block { th scope="rowgroup" colspan=(self.columns.len() + 1) {
-                                span { (description::scenario(block.scenario)) }
-                            } }
-                            @for line in &block.lines { (line.html()) }
-                        }
-                    }
-                }
-            }
+        let numbers = self.columns.iter().map(|column| Column::number(column.head, column.unit));
+        let mut table = Table::new([Column::name("scenario, attackers")].into_iter().chain(numbers));
+        for block in &self.blocks {
+            table.push(Row::heading(labels::scenario(block.scenario)));
+            table.rows.extend(block.lines.iter().map(Line::row));
         }
+        table.html(&format!("Table {}", self.number), "")
     }
+}
+
+fn of_scenario(rows: &[&TableRow], scenario: Scenario) -> Vec<TableRow> {
+    rows.iter().filter(|row| row.scenario == scenario).map(|row| (*row).clone()).collect()
 }
 
 /// The rows of a scenario.
@@ -125,33 +103,31 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn lines(&self, table: u8, scenario: Scenario, columns: &[Column]) -> Vec<Line> {
+    fn lines(&self, table: u8, scenario: Scenario, columns: &[MeasureColumn]) -> Vec<Line> {
         let mut lines = Vec::new();
         let mut before = None;
         for row in by_approach(&self.ours) {
             let approach = row.approach;
-            let line = |kind, cells| Line { kind, approach, cells };
             let own = columns.iter().map(|column| measured(column, row, false)).collect();
-            lines.push(line(LineKind::Ours(row.trials), own));
+            lines.push(Line { kind: LineKind::Ours(row.trials), approach, cells: own });
             let Some(paper) = self.paper.iter().find(|paper| paper.approach == approach) else { continue };
             // It is already below ours with another number of trials.
             if before.replace(approach) != Some(approach) {
-                let printed = columns.iter().map(|column| measured(column, paper, true)).collect();
-                lines.push(line(LineKind::Paper(paper.trials), printed));
+                let cells = columns.iter().map(|column| measured(column, paper, true)).collect();
+                lines.push(Line { kind: LineKind::Paper(paper.trials), approach, cells });
             }
             let comparisons = self.report.with_paper;
-            let less = columns.iter().map(|column| less(column, row, paper, comparisons)).collect();
-            lines.push(line(LineKind::Difference, less));
+            let cells = columns.iter().map(|column| less(column, row, paper, comparisons)).collect();
+            lines.push(Line { kind: LineKind::Difference, approach, cells });
         }
         for (first, second) in pairs(self.report.between, table, scenario) {
             for (ours, rows, comparisons) in
                 [(true, &self.ours, self.report.between), (false, &self.paper, self.report.papers_between)]
             {
-                let of = |approach| rows.iter().filter(move |row: &&TableRow| row.approach == approach);
-                for a in of(first) {
+                for a in rows.iter().filter(|row| row.approach == first) {
                     // Where a table has rows of several numbers of trials, rows of equal numbers are
                     // compared.
-                    let mut others = of(second);
+                    let mut others = rows.iter().filter(|row| row.approach == second);
                     let alike = others.clone().find(|b| b.trials == a.trials);
                     let Some(b) = alike.or_else(|| others.next()) else { continue };
                     let cells = columns.iter().map(|column| less(column, a, b, comparisons)).collect();
@@ -184,7 +160,7 @@ fn by_approach(rows: &[TableRow]) -> Vec<&TableRow> {
 pub(crate) fn pairs(comparisons: &[Comparison], table: u8, scenario: Scenario) -> Vec<(Approach, Approach)> {
     let mut pairs = Vec::new();
     for c in comparisons.iter().filter(|c| (c.table, c.scenario) == (table, scenario)) {
-        let pair = description::oriented((c.first_approach, c.second_approach));
+        let pair = labels::oriented((c.first_approach, c.second_approach));
         if !pairs.contains(&pair) {
             pairs.push(pair);
         }
@@ -193,42 +169,49 @@ pub(crate) fn pairs(comparisons: &[Comparison], table: u8, scenario: Scenario) -
 }
 
 /// A row's own number; a share of the paper's has no more digits than it prints.
-fn measured(column: &Column, row: &TableRow, paper: bool) -> Cell {
-    let Some(value) = column.value(row) else { return Cell::default() };
+fn measured(column: &MeasureColumn, row: &TableRow, is_paper: bool) -> Cell {
+    let Some(value) = column.value(row) else { return Cell::from("") };
     let decimals = column.decimals;
     let beside = if column.is_share() {
         let interval = column.interval(row);
-        interval.map(|i| format!("{}–{}", numbers::plain(i.low, decimals), numbers::plain(i.high, decimals)))
+        interval.map(|i| format!("{}–{}", plain(i.low, decimals), plain(i.high, decimals)))
     } else {
-        column.spread(row).map(|sd| format!("sd {}", numbers::plain(sd, decimals)))
+        column.spread(row).map(|sd| format!("sd {}", plain(sd, decimals)))
     };
-    let whole = paper && column.is_share();
-    let value = if whole { numbers::printed(value, decimals) } else { numbers::plain(value, decimals) };
-    let lacks = if value.contains('.') { 0 } else { decimals };
-    Cell { value, marks: "", beside: beside.unwrap_or_default(), lacks }
+    let is_rounded = is_paper && column.is_share();
+    let value = if is_rounded { printed(value, decimals) } else { plain(value, decimals) };
+    let missing_decimals = if value.contains('.') { 0 } else { decimals };
+    Cell { missing_decimals, ..with_detail(value, "", beside) }
 }
 
 /// The first row's number less the second's, with its test if there is one.
-fn less(column: &Column, first: &TableRow, second: &TableRow, comparisons: &[Comparison]) -> Cell {
-    let (Some(a), Some(b)) = (column.value(first), column.value(second)) else { return Cell::default() };
+fn less(column: &MeasureColumn, first: &TableRow, second: &TableRow, comparisons: &[Comparison]) -> Cell {
+    let (Some(a), Some(b)) = (column.value(first), column.value(second)) else { return Cell::from("") };
     // Counts depend on the number of trials: only equal numbers can be compared.
     if column.is_count() && first.trials != second.trials {
-        return Cell::default();
+        return Cell::from("");
     }
-    let value = numbers::signed(a - b, column.decimals);
-    let p = tested(column, first, second, comparisons).and_then(|comparison| comparison.p_holm);
-    let (marks, beside) = p.map_or(("", String::new()), |p| (numbers::marks(p), numbers::p(p)));
-    Cell { value, marks, beside, lacks: 0 }
+    let p_holm = tested(column, first, second, comparisons).and_then(|comparison| comparison.p_holm);
+    with_detail(signed(a - b, column.decimals), stars(p_holm), p_holm.map(p))
+}
+
+/// A value with its stars; its interval or p for a page.
+pub(crate) fn with_detail(value: String, marks: &'static str, detail: Option<String>) -> Cell {
+    let cell = Cell::marked(value, marks);
+    match detail {
+        Some(detail) => cell.detail(html! { (detail) }),
+        None => cell,
+    }
 }
 
 /// The comparison of these two rows, in either order.
 fn tested<'c>(
-    column: &Column,
+    column: &MeasureColumn,
     first: &TableRow,
     second: &TableRow,
     comparisons: &'c [Comparison],
 ) -> Option<&'c Comparison> {
-    let Kind::Measured(measure) = column.kind else { return None };
+    let ColumnValue::Measured(measure) = column.value else { return None };
     let (a, b) = (measure.value(first)?, measure.value(second)?);
     comparisons.iter().find(|c| {
         let own = (c.first_approach, c.second_approach, c.first, c.second);
@@ -239,22 +222,13 @@ fn tested<'c>(
 }
 
 impl Line {
-    fn html(&self) -> Markup {
-        html! {
-            tr class=(self.class()) {
-                th.name scope="row" style=(description::css(self.approach)) {
-                    (self.label())
-                    @if let Some(trials) = self.trials() { small { (trials) " trials" } }
-                }
-                @for cell in &self.cells { td {
-                    (cell.value)
-                    // Decimals are aligned.
-                    @if cell.lacks > 0 { span.pad aria-hidden="true" { "." ("0".repeat(cell.lacks)) } }
-                    @if !cell.marks.is_empty() { sup { (cell.marks) } }
-                    @if !cell.beside.is_empty() { small { (cell.beside) } }
-                } }
-            }
+    fn row(&self) -> Row {
+        let mut name = Cell::from(self.label());
+        if let Some(trials) = self.trials() {
+            name = name.detail(html! { (trials) " trials" });
         }
+        let style = labels::css(self.approach);
+        Row { class: self.class(), style, ..Row::from(vec![name]).with(self.cells.iter().cloned()) }
     }
 
     const fn class(&self) -> &'static str {
@@ -267,7 +241,7 @@ impl Line {
         }
     }
 
-    /// Its number of trials.
+    /// Number of trials, of both sides where they differ.
     pub(crate) fn trials(&self) -> Option<String> {
         match self.kind {
             LineKind::Ours(trials) | LineKind::Paper(trials) => Some(trials.to_string()),
@@ -278,12 +252,12 @@ impl Line {
     }
 
     pub(crate) fn label(&self) -> String {
-        let own = description::approach(self.approach);
+        let own = labels::approach(self.approach);
         match self.kind {
             LineKind::Ours(_) => own.to_owned(),
             LineKind::Paper(_) => "paper".to_owned(),
             LineKind::Difference => "ours − paper".to_owned(),
-            LineKind::Against(other, _) => format!("{own} − {}", description::approach(other)),
+            LineKind::Against(other, _) => format!("{own} − {}", labels::approach(other)),
             LineKind::PaperAgainst(_) => "paper’s".to_owned(),
         }
     }

@@ -2,12 +2,10 @@
 //! in for ours, a little changed.
 
 use arena::TrialConfig;
+use study::evaluation::{Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine, TableRow, compare, paper, with_paper};
 use brain::Approach;
 use hil_sim::{Configuration, Scenario};
-use report::{EDGE, Facts, Map, Report};
-use study::evaluation::{
-    Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine, TableRow, compare, paper, with_paper,
-};
+use report::{Facts, Map, Report, SQUARE_MM};
 
 /// Rows that could be ours: the paper's, some of them changed.
 fn ours() -> Vec<TableRow> {
@@ -133,7 +131,7 @@ fn the_page_stands_alone() {
 }
 
 #[test]
-fn words_from_outside_cannot_break_the_page() {
+fn text_from_outside_cannot_break_the_page() {
     let html = Made::new().report().html();
     assert!(html.contains("&lt;script&gt;alert('&amp;')&lt;/script&gt;"));
     assert!(html.contains("more &lt; less") && html.contains("Program &amp; options"));
@@ -174,7 +172,7 @@ fn every_share_of_ours_and_the_papers_is_in_its_table() {
 }
 
 #[test]
-fn intervals_differences_and_their_significance_are_those_of_a_hand_calculation() {
+fn intervals_and_p_are_those_of_a_hand_calculation() {
     let made = Made::new();
     let html = made.report().html();
     let table = section(&html, "table-1");
@@ -192,10 +190,10 @@ fn intervals_differences_and_their_significance_are_those_of_a_hand_calculation(
 }
 
 #[test]
-fn the_papers_numbers_look_other_than_ours() {
+fn rows_of_the_paper_have_a_style_of_their_own() {
     let html = Made::new().report().html();
-    let paper = html.matches("<tr class=\"paper\">").count();
-    assert_eq!(paper, html.matches("<tr class=\"ours\">").count());
+    let paper = html.matches("<tr class=\"paper\" style").count();
+    assert_eq!(paper, html.matches("<tr class=\"ours\" style").count());
     assert!(paper == paper_rows() && html.contains("tr.paper td"));
 }
 
@@ -204,10 +202,10 @@ fn paper_rows() -> usize {
 }
 
 #[test]
-fn plots_are_whole_snapshots_and_carry_their_numbers() {
+fn plots_are_whole_svgs_and_carry_their_numbers() {
     let made = Made::new();
-    let pictures = made.report().pictures();
-    let names: Vec<_> = pictures.iter().map(|picture| picture.name.as_str()).collect();
+    let files = made.report().figure_files();
+    let names: Vec<_> = files.iter().map(|file| file.name.as_str()).collect();
     assert_eq!(
         names,
         [
@@ -222,16 +220,16 @@ fn plots_are_whole_snapshots_and_carry_their_numbers() {
             "table-6-means"
         ]
     );
-    for picture in &pictures {
-        let document = roxmltree::Document::parse(&picture.svg).unwrap();
+    for file in &files {
+        let document = roxmltree::Document::parse(&file.svg).unwrap();
         let (_, _, width, height) = view_box(&document);
         for node in document.descendants().filter(|node| node.has_tag_name("circle")) {
             assert!(node.attribute("r").is_some_and(|r| r.parse::<f64>().unwrap() > 0.0));
         }
-        assert!(width > 300.0 && height > 100.0, "{} {width} {height}", picture.name);
+        assert!(width > 300.0 && height > 100.0, "{} {width} {height}", file.name);
     }
     let texts = |name: &str| -> Vec<String> {
-        let svg = &pictures.iter().find(|picture| picture.name == name).unwrap().svg;
+        let svg = &files.iter().find(|file| file.name == name).unwrap().svg;
         let document = roxmltree::Document::parse(svg).unwrap();
         let texts = document.descendants().filter(|node| node.has_tag_name("text"));
         texts.filter_map(|node| node.text().map(str::to_owned)).collect()
@@ -253,7 +251,7 @@ fn view_box(document: &roxmltree::Document<'_>) -> (f64, f64, f64, f64) {
 fn maps_are_drawn_with_what_they_count() {
     let config = TrialConfig::new(Scenario::DefenderAhead, Configuration::DefenderGoalie, Approach::Cases, 5);
     let cell = study::evaluation::EvaluationCell {
-        profile: arena::Profile::Simulated,
+        profile: study::evaluation::Profile::Simulated,
         configuration: config.opponents,
         scenario: config.scenario,
         approach: config.approach,
@@ -264,17 +262,17 @@ fn maps_are_drawn_with_what_they_count() {
     made.maps.push(map.clone());
     let html = made.report().html();
     assert!(section(&html, "maps").contains("the first 1 trials of each"));
-    let sheet = made.report().pictures().pop().unwrap();
+    let sheet = made.report().figure_files().pop().unwrap();
     assert_eq!(sheet.name, "maps-dg-3");
     roxmltree::Document::parse(&sheet.svg).unwrap();
     // Squares where the ball was for at least 5 ms of the one trial: of every tick of 40 ms.
     let squares = map.seconds.iter().filter(|seconds| **seconds > 0.0).count();
-    assert_eq!(sheet.svg.matches(&format!("h{EDGE:.0}v{EDGE:.0}")).count(), squares);
+    assert_eq!(sheet.svg.matches(&format!("h{SQUARE_MM:.0}v{SQUARE_MM:.0}")).count(), squares);
     assert_eq!(map.ends.len(), 1);
 }
 
 #[test]
-fn markdown_has_the_numbers_and_whole_rows() {
+fn markdown_has_the_numbers_and_rows_of_equal_width() {
     let text = Made::new().report().markdown("pictures/");
     assert!(text.starts_with("Played by seed 7.\n"), "{text}");
     assert!(text.contains("### Table 1") && text.contains("](pictures/table-1-outcomes.svg)"));
@@ -309,5 +307,5 @@ fn the_same_results_are_the_same_page() {
         facts: &[],
         maps: &[],
     };
-    assert!(nothing.html().contains("At a glance") && nothing.pictures().is_empty());
+    assert!(nothing.html().contains("At a glance") && nothing.figure_files().is_empty());
 }

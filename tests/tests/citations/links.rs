@@ -121,7 +121,7 @@ const TOP: [&str; 11] = [
 ];
 
 /// A crate's directories, as starts of file paths in its README.
-const OWN: [&str; 9] = ["bench", "benches", "data", "drawing", "examples", "library", "src", "tools", "web"];
+const OWN: [&str; 9] = ["bench", "benches", "data", "examples", "figures", "library", "src", "tools", "web"];
 
 #[cfg(test)]
 mod tests {

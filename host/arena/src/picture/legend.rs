@@ -3,7 +3,7 @@
 use super::page::{Page, Px, bold, font};
 use super::{ATTACKERS, BALL, FAINT, INK, OPPONENTS, SIDE};
 use crate::recording::{Recording, Start};
-use drawing::Anchor;
+use figures::Anchor;
 
 /// Draws signs and list from `top` down; returns the height that the figure needs.
 pub(super) fn draw(page: &mut Page, recording: &Recording, starts: &[&Start], width: f32, top: f32) -> f32 {

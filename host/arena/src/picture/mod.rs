@@ -16,7 +16,7 @@ use rules::League;
 use crate::names::letter;
 use crate::recording::{RecordedSample, Recording, Start};
 use crate::report::TrialReport;
-use drawing::{Anchor, Font};
+use figures::{Anchor, Font};
 
 use page::{Page, Px, SCALE, bold, font};
 

@@ -1,7 +1,7 @@
 //! `page`: mapping from field to sheet coordinates. Pixels from the sheet's upper left corner, drawn with the
 //! project's one writer.
 
-use drawing::{Anchor, At, Font, Svg, Theme, draw_field};
+use figures::{Anchor, At, Font, Svg, Theme, draw_field};
 use geometry::{Field, Point};
 use rules::League;
 

@@ -10,8 +10,7 @@ use std::process::ExitCode;
 use case_tools::coverage::{Area, CellCounters, Cells, Counters, VERDICTS};
 use casebase::PointMm;
 use clap::{Args, ValueEnum};
-use drawing::Theme;
-use drawing::cases::{HeatMap, Scale, heat_maps};
+use figures::{HeatMap, Scale, Theme, heat_maps};
 use feed::recording::problem_line;
 use serde_json::{Value, json};
 

@@ -7,8 +7,7 @@ use std::process::ExitCode;
 use arena::cases::{LibraryHandle, counted, problem};
 use casebase::{CaseVerdict, Match, Problem, Symmetry, rank_order};
 use clap::{Args, ValueEnum};
-use drawing::Theme;
-use drawing::cases::{CasePicture, Overlay, case_picture, sheet};
+use figures::{CasePicture, Overlay, Theme, case_picture, sheet};
 
 use super::failure::{NoCase, ProblemError};
 use super::lines::LINE_MAX;

@@ -9,9 +9,9 @@ use arena::CaseNames;
 use arena::cases::LibraryHandle;
 use casebase::CaseBase;
 use clap::Args;
+use figures::FigureFile;
 use hil_sim::small_size::worlds::WorldPlan;
 use host::strategy::{Tactics, Team};
-use report::Picture;
 use rules::League;
 use serde_json::json;
 use study::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
@@ -180,12 +180,12 @@ impl MatchesArgs {
             before.map(|before| comparison_table(&compare_matches(&identity.plan, &before, rows)) + "\n");
         write(&directory.join("matches.csv"), &made.csv)?;
         write(&directory.join("matches.json"), &made.json()?)?;
-        for picture in made.pictures("") {
-            write(&directory.join(&picture.name).with_extension("svg"), picture.svg.as_bytes())?;
+        for figure in made.figures("") {
+            write(&directory.join(&figure.name).with_extension("svg"), figure.svg.as_bytes())?;
         }
         if let Some(file) = &self.markdown {
-            let figures = |beside: &str| made.text(beside, &self.section);
-            insert(file, ("matches", &self.section), figures, made.pictures(&format!("{}-", self.section)))?;
+            let text_with = |beside: &str| made.text(beside, &self.section);
+            insert(file, ("matches", &self.section), text_with, made.figures(&format!("{}-", self.section)))?;
         }
         let (matches, seed) = (made.matches, made.identity.plan.seed);
         work::print_text(&format!(
@@ -236,8 +236,8 @@ impl<'a> Made<'a> {
         markdown(&self.outcomes, &self.effects, &self.passes)
     }
 
-    fn pictures(&self, prefix: &str) -> Vec<Picture> {
-        let named = |name: &str, svg| Picture { name: format!("{prefix}{name}"), svg };
+    fn figures(&self, prefix: &str) -> Vec<FigureFile> {
+        let named = |name: &str, svg| FigureFile { name: format!("{prefix}{name}"), svg };
         vec![named("ratios", plot(&self.outcomes)), named("calibration", calibration_plot(&self.passes))]
     }
 

@@ -12,7 +12,8 @@ use arena::Setup;
 use brain::{Approach, Positioning};
 use casebase::RetrievalSettings;
 use clap::Args;
-use report::{Ablation, Facts, Map, Picture, Report};
+use figures::FigureFile;
+use report::{Ablation, Facts, Map, Report};
 use study::evaluation::{Identity, Results, compare, in_words, merge, paper};
 
 use super::{merge as shards, work};
@@ -64,13 +65,13 @@ pub(super) fn write_ablation(
     directory: &Path,
     args: &PageArgs,
 ) -> Result<(), Failure> {
-    let drawn = ablation.write(directory).map_err(|error| unwritten(&directory.join(PAGE), error))?;
+    let drawn = ablation.write(directory).map_err(|error| unwritten(&directory.join(REPORT_FILE), error))?;
     if args.png {
         picture::write(&directory.join("plots").join(&drawn.name).with_extension("png"), &drawn.svg)?;
     }
     match &args.markdown {
         Some(file) => {
-            insert(file, ("evaluation", "ablations"), |pictures| ablation.markdown(pictures), vec![drawn])
+            insert(file, ("evaluation", "ablations"), |directory| ablation.markdown(directory), vec![drawn])
         }
         None => Ok(()),
     }
@@ -85,7 +86,7 @@ pub(super) fn run(args: &AgainArgs) -> Result<ExitCode, Failure> {
     if let Some(file) = &args.markdown {
         made.write_markdown(&results, file)?;
     }
-    print_text(&format!("{}\n", printable_path(&args.directory.join(PAGE))))?;
+    print_text(&format!("{}\n", printable_path(&args.directory.join(REPORT_FILE))))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -127,9 +128,9 @@ impl Made {
 
     fn write(&self, results: &Results, directory: &Path, args: &ReportArgs) -> Result<(), Failure> {
         let written = self.report(results).write(directory);
-        let pictures = written.map_err(|error| unwritten(&directory.join(PAGE), error))?;
+        let files = written.map_err(|error| unwritten(&directory.join(REPORT_FILE), error))?;
         if args.png {
-            for drawn in pictures {
+            for drawn in files {
                 picture::write(&directory.join("plots").join(drawn.name).with_extension("png"), &drawn.svg)?;
             }
         }
@@ -138,7 +139,7 @@ impl Made {
 
     fn write_markdown(&self, results: &Results, file: &Path) -> Result<(), Failure> {
         let report = self.report(results);
-        insert(file, ("evaluation", "figures"), |pictures| report.markdown(pictures), report.pictures())
+        insert(file, ("evaluation", "figures"), |directory| report.markdown(directory), report.figure_files())
     }
 }
 
@@ -146,27 +147,26 @@ impl Made {
 const MARKDOWN_LEN_MAX: u64 = 1 << 24;
 
 /// Inserts text between the markers of that task and name in a file, and writes the figures that it refers to
-/// beside the file.
+/// beside the file. `text_with` takes the directory that the figures are written to.
 pub(super) fn insert(
     file: &Path,
     (task, name): (&str, &str),
-    figures: impl Fn(&str) -> String,
-    pictures: Vec<Picture>,
+    text_with: impl Fn(&str) -> String,
+    figures: Vec<FigureFile>,
 ) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| unwritten(file, error);
     let beside = format!("{}/", file.file_stem().unwrap_or_default().to_string_lossy());
-    let text = foreign::read_text(file, MARKDOWN_LEN_MAX).map_err(failed)?;
-    let figures = figures(&beside);
-    let text = report::between_markers(&text, task, name, &figures)
+    let text = foreign::read_text(file, MARKDOWN_LEN_MAX).map_err(|error| unwritten(file, error))?;
+    let inserted = text_with(&beside);
+    let text = report::between_markers(&text, task, name, &inserted)
         .map_err(|error| Failure::Markdown { file: file.to_owned(), error })?;
     let directory = file.with_extension("");
     work::make(&directory)?;
-    for drawn in pictures {
-        if figures.contains(&format!("{beside}{}.svg", drawn.name)) {
-            picture::write(&directory.join(drawn.name).with_extension("svg"), &drawn.svg)?;
+    for figure in figures {
+        if inserted.contains(&format!("{beside}{}.svg", figure.name)) {
+            picture::write(&directory.join(figure.name).with_extension("svg"), &figure.svg)?;
         }
     }
-    fs::write(file, text).map_err(failed)
+    fs::write(file, text).map_err(|error| unwritten(file, error))
 }
 
 fn unwritten(file: &Path, error: std::io::Error) -> Failure {
@@ -223,4 +223,4 @@ fn library(label: &str) -> LibraryArgs {
     LibraryArgs { directory: DirectoryArgs { library }, league: label.to_owned() }
 }
 
-const PAGE: &str = "report.html";
+const REPORT_FILE: &str = "report.html";

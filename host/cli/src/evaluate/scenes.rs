@@ -93,9 +93,6 @@ pub(super) fn run(args: &ScenesArgs) -> Result<ExitCode, Failure> {
 
 impl ScenesArgs {
     fn plan(&self) -> ScenePlan {
-        let or = |given: &[MatchTeam], usual: Vec<MatchTeam>| {
-            if given.is_empty() { usual } else { given.to_vec() }
-        };
         let references = Team::OPPONENTS.map(MatchTeam::from).into_iter().chain([MatchTeam::round_1()]);
         ScenePlan {
             league: self.league,
@@ -104,8 +101,8 @@ impl ScenesArgs {
             free_kicks: self.free_kicks,
             open_play: self.open_play,
             team: self.team,
-            variants: or(&self.variants, MatchTeam::ablations()),
-            opponents: or(&self.opponents, references.collect()),
+            variants: given_or(&self.variants, MatchTeam::ablations()),
+            opponents: given_or(&self.opponents, references.collect()),
         }
     }
 
@@ -118,4 +115,9 @@ impl ScenesArgs {
             self.seed
         )
     }
+}
+
+/// The teams given on the command line, or these if there are none.
+fn given_or(given: &[MatchTeam], default: Vec<MatchTeam>) -> Vec<MatchTeam> {
+    if given.is_empty() { default } else { given.to_vec() }
 }

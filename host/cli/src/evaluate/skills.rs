@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
+use figures::{Table, row};
 use hil_sim::small_size::worlds::{WorldChoice, WorldPlan};
 use rules::League;
 use study::skills::{Skill, SkillPlan, SkillRow, TryResult, rows};
@@ -77,9 +78,9 @@ pub(super) fn run(args: &SkillsArgs) -> Result<ExitCode, Failure> {
         work::print_text(&format!("{json}\n"))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut text = description(&table);
+    let mut text = markdown(&table);
     if let Some(file) = &args.markdown {
-        insert(file, ("skills", &args.section), |_| description(&table), Vec::new())?;
+        insert(file, ("skills", &args.section), |_| markdown(&table), Vec::new())?;
     }
     if args.failures {
         text += &failures(&results);
@@ -109,29 +110,27 @@ impl SkillsArgs {
 }
 
 /// The table as Markdown.
-fn description(rows: &[SkillRow]) -> String {
-    let mut text = String::from(
-        "| skill | league | world | worlds | tries | succeeded | share | median time | 95 % within |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
-    );
-    let seconds = |time: Option<f64>| time.map_or(String::new(), |time| format!("{time:.2} s"));
-    for row in rows {
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "| {} | {} | {} | {} | {} | {} | {:.1} % | {} | {} |",
+fn markdown(rows: &[SkillRow]) -> String {
+    let rows = rows.iter().map(|row| {
+        let share = 100.0 * row.succeeded as f64 / row.tries.max(1) as f64;
+        row![
             row.skill,
             row.league,
             row.world,
             row.worlds,
             row.tries,
             row.succeeded,
-            100.0 * row.succeeded as f64 / row.tries.max(1) as f64,
+            format!("{share:.1} %"),
             seconds(row.time_median_s),
-            seconds(row.time_p95_s)
-        );
-    }
-    text
+            seconds(row.time_p95_s),
+        ]
+    });
+    let heads = "skill | league | world | worlds | tries | succeeded | share | median time | 95 % within";
+    Table::of_texts(heads).with_rows(rows).markdown()
+}
+
+fn seconds(time: Option<f64>) -> String {
+    time.map_or(String::new(), |time| format!("{time:.2} s"))
 }
 
 /// Tries that failed, two lines each.

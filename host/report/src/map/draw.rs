@@ -1,16 +1,15 @@
-//! `draw`: drawing of a cell's maps. The ball's seconds as shades, passes as arrows, ends by outcome, on the
-//! field.
+//! `draw`: maps of a cell drawn on the field: the ball's seconds as shades, passes as arrows, ends by outcome.
 
 use std::fmt::Write as _;
 
 use casebase::FieldMm;
-use drawing::{Anchor, Font, Svg, Theme, draw_field, field_lines, half_extent};
+use figures::{Anchor, FigureFile, Font, Svg, Theme, draw_field, field_lines, half_extent};
 use geometry::{Field, Point};
 use hil_sim::{Configuration, Scenario, TrialOutcome};
 use maud::{Markup, PreEscaped, html};
 
-use super::{EDGE, Map, PassKind};
-use crate::{Picture, description};
+use super::{Map, PassKind, SQUARE_MM};
+use crate::labels;
 
 /// The maps of a page: a scenario a row, an approach a column.
 pub(crate) fn html(maps: &[Map]) -> Markup {
@@ -18,11 +17,11 @@ pub(crate) fn html(maps: &[Map]) -> Markup {
         div.keys { @for (sign, label) in signs() { span.key { (PreEscaped(sign)) (label) } } }
         div.keys { span.key { "ball, seconds a trial in a square of 10 cm" } (PreEscaped(scale_svg())) }
         @for (configuration, scenario, row) in rows(maps) {
-            h3 { (description::scenario(scenario)) ", against " (description::opponents(configuration)) small { (trials(&row)) } }
+            h3 { (labels::scenario(scenario)) ", against " (labels::opponents(configuration)) small { (trials(&row)) } }
             div.maps { @for map in &row {
                 figure {
-                    figcaption style=(description::css(map.cell.approach)) {
-                        (description::approach(map.cell.approach)) small { (caption(map)) }
+                    figcaption style=(labels::css(map.cell.approach)) {
+                        (labels::approach(map.cell.approach)) small { (caption(map)) }
                     }
                     (PreEscaped(alone(&passes(map), map, "Passes and ends")))
                     (PreEscaped(alone(&heat(map), map, "The ball")))
@@ -33,24 +32,24 @@ pub(crate) fn html(maps: &[Map]) -> Markup {
 }
 
 /// One figure a configuration: passes on the left, the ball on the right, for files.
-pub(crate) fn sheets(maps: &[Map]) -> Vec<Picture> {
-    let mut pictures = Vec::new();
+pub(crate) fn sheets(maps: &[Map]) -> Vec<FigureFile> {
+    let mut files = Vec::new();
     for (configuration, scenario, row) in rows(maps) {
         let colors = Theme::Light.colors();
         let mut svg = Svg::default();
         let Some([x, y]) = row.first().map(|map| half_extent(&map.field)) else { continue };
         let (gap, size) = (x * 0.08, x * 0.075);
-        let against = description::opponents(configuration);
-        let title = format!("{}, against {against}: {}", description::scenario(scenario), trials(&row));
+        let against = labels::opponents(configuration);
+        let title = format!("{}, against {against}: {}", labels::scenario(scenario), trials(&row));
         let heading = Font { size: size * 1.1, fill: colors.ink, bold: true, halo: None };
         svg.text([-x, size], &title, Anchor::Start, heading);
         let mut down = -size * 0.4;
         for map in &row {
-            let fill = description::color(map.cell.approach);
+            let fill = labels::color(map.cell.approach);
             let font = Font { size, fill, bold: true, halo: None };
-            let name = description::approach(map.cell.approach);
+            let name = labels::approach(map.cell.approach);
             svg.text([-x, down - size], name, Anchor::Start, font);
-            let after = -x + drawing::width(name, size) * 1.15 + size;
+            let after = -x + figures::width(name, size) * 1.15 + size;
             let font = Font { size: size * 0.8, fill: colors.faint, bold: false, halo: None };
             svg.text([after, down - size], &caption(map), Anchor::Start, font);
             let middle = down - size * 1.6 - y;
@@ -61,17 +60,17 @@ pub(crate) fn sheets(maps: &[Map]) -> Vec<Picture> {
         let right = 3.0 * x + gap;
         down = legend(&mut svg, [-x, down - size * 0.5], [x + gap, right], size * 0.85);
         let lower = [-x - gap, down - gap];
-        let picture = svg.finish(
+        let svg = svg.finish(
             lower,
             [right + gap, size * 2.6 + gap * 0.3],
-            SHEET_PX / (4.0 * x),
+            SHEET_WIDTH_PX / (4.0 * x),
             colors.paper,
             &title,
         );
         let name = format!("maps-{}-{}", configuration.label(), scenario.label());
-        pictures.push(Picture { name, svg: picture });
+        files.push(FigureFile { name, svg });
     }
-    pictures
+    files
 }
 
 /// Maps by configuration and scenario, in their order.
@@ -113,8 +112,8 @@ fn heat(map: &Map) -> Svg {
     for (i, seconds) in map.seconds.iter().enumerate() {
         let Some(shade) = shade(seconds / f64::from(map.trials.max(1))) else { continue };
         let (column, row) = (i % map.columns(), i / map.columns());
-        let (x, top) = (left + column as f64 * EDGE, -(low + (row + 1) as f64 * EDGE));
-        let _ = write!(squares[shade], "M{x:.0} {top:.0}h{EDGE:.0}v{EDGE:.0}h-{EDGE:.0}z");
+        let (x, top) = (left + column as f64 * SQUARE_MM, -(low + (row + 1) as f64 * SQUARE_MM));
+        let _ = write!(squares[shade], "M{x:.0} {top:.0}h{SQUARE_MM:.0}v{SQUARE_MM:.0}h-{SQUARE_MM:.0}z");
     }
     for (path, fill) in squares.iter().zip(SHADES).filter(|(path, _)| !path.is_empty()) {
         svg.element(format_args!(
@@ -123,13 +122,13 @@ fn heat(map: &Map) -> Svg {
     }
     let mut over = Svg::default();
     field_lines(&mut over, &map.field, colors, colors.ink);
-    svg.group_with(&over, "0.45");
+    svg.group(&over, r#"opacity="0.45""#);
     svg
 }
 
 /// The shade for this number of seconds a trial; `None` for next to nothing.
 fn shade(seconds: f64) -> Option<usize> {
-    STEPS.iter().rposition(|least| seconds >= *least)
+    SHADE_SECONDS_MIN.iter().rposition(|least| seconds >= *least)
 }
 
 /// Passes and where trials ended.
@@ -165,7 +164,7 @@ fn passes(map: &Map) -> Svg {
     svg
 }
 
-/// Where a robot stood: attackers are circles and opponents squares, as in the paper's figures.
+/// Draws a robot's place at kick-off: a circle for attackers, a square for opponents, as in the paper's figures.
 fn kick_off(svg: &mut Svg, [x, y]: [f64; 2], attacker: bool) {
     let colors = Theme::Light.colors();
     let color = if attacker { colors.team } else { colors.opponent };
@@ -180,9 +179,9 @@ fn kick_off(svg: &mut Svg, [x, y]: [f64; 2], attacker: bool) {
 /// Arrows of a kind, each one short element: there are hundreds.
 fn arrows(svg: &mut Svg, segments: &[([f64; 2], [f64; 2])], kind: PassKind, opacity: &str) {
     let (color, style) = match kind {
-        PassKind::Completed => (COMPLETED, r#"stroke-width="14""#),
-        PassKind::Lost => (LOST, r#"stroke-width="11" stroke-dasharray="34 26""#),
-        PassKind::Chance => (CHANCE, r#"stroke-width="11""#),
+        PassKind::Completed => (COMPLETED_PASS_COLOR, r#"stroke-width="14""#),
+        PassKind::Lost => (LOST_PASS_COLOR, r#"stroke-width="11" stroke-dasharray="34 26""#),
+        PassKind::Chance => (CHANCE_PASS_COLOR, r#"stroke-width="11""#),
     };
     let (mut lines, mut heads) = (Svg::default(), Svg::default());
     for (from, to) in segments {
@@ -191,7 +190,7 @@ fn arrows(svg: &mut Svg, segments: &[([f64; 2], [f64; 2])], kind: PassKind, opac
         if length <= 0.0 {
             continue;
         }
-        let head = HEAD.min(length);
+        let head = ARROWHEAD_MM.min(length);
         let along = [dx / length * head, dy / length * head];
         let (back, side) = ([to[0] - along[0], to[1] - along[1]], [along[1] * 0.42, -along[0] * 0.42]);
         let at = |x: f64, y: f64| format!("{:.0} {:.0}", x, -y);
@@ -250,10 +249,10 @@ fn alone(svg: &Svg, map: &Map, title: &str) -> String {
     let [x, y] = half_extent(&map.field);
     let mut page = Svg::default();
     page.inset(svg, [0.0, 0.0]);
-    page.finish([-x, -y], [x, y], PAGE_PX / (2.0 * x), Theme::Light.colors().paper, title)
+    page.finish([-x, -y], [x, y], PAGE_MAP_WIDTH_PX / (2.0 * x), Theme::Light.colors().paper, title)
 }
 
-/// What the signs mean, in the order of the legend.
+/// The signs as SVG with their meanings, in the order of the legend.
 fn signs() -> Vec<(String, &'static str)> {
     let paper = Theme::Light.colors().paper;
     let drawn = entries().into_iter().map(|(sign, label)| {
@@ -302,7 +301,7 @@ fn legend(svg: &mut Svg, [left, top]: [f64; 2], [from, right]: [f64; 2], size: f
     let font = Font { size, fill: colors.ink, bold: false, halo: None };
     let (mut across, mut down) = (left, top - size * 1.2);
     for (sign, label) in entries() {
-        let wide = 470.0 + drawing::width(label, size);
+        let wide = 470.0 + figures::width(label, size);
         if across > left && across + wide > from - size {
             (across, down) = (left, down - size * 1.9);
         }
@@ -320,7 +319,7 @@ fn scale(width: f64, size: f64) -> Svg {
     let mut svg = Svg::default();
     let step = width / SHADES.len() as f64;
     let font = Font { size, fill: colors.ink, bold: false, halo: None };
-    for (i, (fill, least)) in SHADES.iter().zip(STEPS).enumerate() {
+    for (i, (fill, least)) in SHADES.iter().zip(SHADE_SECONDS_MIN).enumerate() {
         let x = step * i as f64;
         svg.rect([x, 0.0], [x + step, -size], format!(r#"fill="{fill}""#));
         svg.text([x, -size * 2.2], &least.to_string(), Anchor::Start, font);
@@ -343,14 +342,14 @@ fn scale_svg() -> String {
 pub(crate) const SHADES: [&str; 7] =
     ["#c9d9ea", "#a5c0de", "#7fa3cf", "#5d83bc", "#4562a3", "#374382", "#2a2459"];
 /// Seconds a trial at which each shade starts.
-const STEPS: [f64; 7] = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+const SHADE_SECONDS_MIN: [f64; 7] = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 /// Length of an arrow's head, mm.
-const HEAD: f64 = 85.0;
-const COMPLETED: &str = "#1b1b1b";
+const ARROWHEAD_MM: f64 = 85.0;
+const COMPLETED_PASS_COLOR: &str = "#1b1b1b";
 /// Reddish purple (Okabe and Ito), darker.
-pub(crate) const LOST: &str = "#b3367d";
-pub(crate) const CHANCE: &str = "#2f6fb7";
+pub(crate) const LOST_PASS_COLOR: &str = "#b3367d";
+pub(crate) const CHANCE_PASS_COLOR: &str = "#2f6fb7";
 /// Width of a map on a page, px.
-const PAGE_PX: f64 = 560.0;
+const PAGE_MAP_WIDTH_PX: f64 = 560.0;
 /// Width of a sheet of two maps beside each other, px.
-const SHEET_PX: f64 = 1100.0;
+const SHEET_WIDTH_PX: f64 = 1100.0;

@@ -11,7 +11,7 @@ use protocol::robot_io::LeggedKick;
 use rayon::prelude::*;
 use study::evaluation::{Evaluation, EvaluationCell, Shard};
 
-pub(crate) use draw::{CHANCE, LOST, SHADES, html, sheets};
+pub(crate) use draw::{CHANCE_PASS_COLOR, LOST_PASS_COLOR, SHADES, html, sheets};
 
 /// The error of a map whose trial could not be played again.
 pub type MapError = SimulationError;
@@ -25,25 +25,25 @@ pub struct Map {
     pub trials: u32,
     /// The field they were played on.
     pub field: casebase::FieldMm,
-    /// Seconds of the ball in each square of [`EDGE`], row by row from the least y, each from the least x;
+    /// Seconds of the ball in each square of [`SQUARE_MM`], row by row from the least y, each from the least x;
     /// all trials together.
     pub seconds: Vec<f64>,
     /// Passes of the attackers, all trials together.
     pub passes: Vec<Pass>,
-    /// Where the robots stood at kick-off; `None` where each trial has its own layout.
+    /// Places of the robots at kick-off; `None` where each trial has its own layout.
     pub start: Option<Layout>,
-    /// Where the ball was at the end of each trial, and the outcome.
+    /// Place of the ball at the end of each trial, and the outcome.
     pub ends: Vec<(Point<Field>, TrialOutcome)>,
 }
 
 /// A ball that one attacker intended for another, or that another one received.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pass {
-    /// Where it was kicked, m, field frame.
+    /// Place of the kick, m, field frame.
     pub from: Point<Field>,
     /// End: where it was received or lost.
     pub to: Point<Field>,
-    /// Whether it arrived, and how it was lost otherwise.
+    /// Outcome of the pass.
     pub kind: PassKind,
 }
 
@@ -91,7 +91,7 @@ impl Map {
     fn square(&self, place: Point<Field>) -> Option<usize> {
         let along = |value: f32, side: i32, squares: usize| {
             let mm = f64::from(value) * 1000.0 + f64::from(side) * 0.5;
-            let square = (mm / EDGE).floor();
+            let square = (mm / SQUARE_MM).floor();
             (square >= 0.0 && square < squares as f64).then_some(square as usize)
         };
         let column = along(place.x(), self.field.length, self.columns())?;
@@ -213,11 +213,11 @@ impl Watcher for Mapper {
 }
 
 fn squares(side: i32) -> usize {
-    (f64::from(side.max(0)) / EDGE).ceil() as usize
+    (f64::from(side.max(0)) / SQUARE_MM).ceil() as usize
 }
 
 /// Side of a square, mm: about the ball's diameter, and well visible in a figure.
-pub const EDGE: f64 = 100.0;
+pub const SQUARE_MM: f64 = 100.0;
 
 #[cfg(test)]
 mod tests;

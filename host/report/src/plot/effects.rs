@@ -2,19 +2,20 @@
 //! ours beside the paper's.
 
 use brain::Approach;
+use figures::numbers::signed;
+use figures::{Dot, DotRow, Figure, Key, Shape, dot_axis, dot_panel};
 use hil_sim::Scenario;
 use study::evaluation::{Measure, TableRow};
 
-use super::rows::{Dot, Row, axis, panel};
-use super::{Figure, Key, Shape, entries, scenarios};
+use super::{entries, scenarios};
 use crate::columns::difference;
 use crate::table::pairs;
-use crate::{Report, description, numbers};
+use crate::{Report, labels};
 
 /// To goal and out of Tables 1, 4 and 6, all on one scale.
 pub(super) fn figure(report: &Report<'_>) -> Figure {
     let mut keys: Vec<Key> = Vec::new();
-    let mut groups: Vec<(String, Vec<Row>)> = Vec::new();
+    let mut groups: Vec<(String, Vec<DotRow>)> = Vec::new();
     for (table, against) in
         [(1, "a defender and a goalie"), (4, "two defenders"), (6, "a defender and a goalie, robots")]
     {
@@ -29,7 +30,7 @@ pub(super) fn figure(report: &Report<'_>) -> Figure {
                 }
                 if !effects.is_empty() {
                     let dots = effects.into_iter().map(|(_, dot)| dot).collect();
-                    rows.push(Row { name: description::scenario(scenario), dots });
+                    rows.push(DotRow { name: labels::scenario(scenario), dots });
                 }
             }
             if !rows.is_empty() {
@@ -38,14 +39,14 @@ pub(super) fn figure(report: &Report<'_>) -> Figure {
         }
     }
     let dots = || groups.iter().flat_map(|(_, rows)| rows).flat_map(|row| &row.dots);
-    let reaches = || dots().filter_map(|dot| dot.reach);
-    let low = reaches().map(|(low, _)| low).fold(0.0, f64::min);
-    let high = reaches().map(|(_, high)| high).fold(0.0, f64::max);
+    let intervals = || dots().filter_map(|dot| dot.interval);
+    let low = intervals().map(|(low, _)| low).fold(0.0, f64::min);
+    let high = intervals().map(|(_, high)| high).fold(0.0, f64::max);
     // Space for the numbers left of the whiskers; the panel has some on the right.
-    let axis = axis(low - (high - low) * 0.14, high);
-    let panels = groups.into_iter().map(|(title, rows)| panel(title, "percentage points", &rows, axis));
+    let axis = dot_axis(low - (high - low) * 0.14, high);
+    let panels = groups.into_iter().map(|(title, rows)| dot_panel(title, "percentage points", &rows, &axis));
     let title = "What one approach has more or less than another, with 95 % intervals".to_owned();
-    Figure { table: 0, name: "differences".to_owned(), title, keys, panels: panels.collect() }
+    Figure { name: "differences".to_owned(), title, keys, panels: panels.collect() }
 }
 
 /// The paper's pair, and approaches beyond it compared with the paper's own.
@@ -54,7 +55,7 @@ fn effects(report: &Report<'_>, table: u8, scenario: Scenario, measure: Measure)
     let mut effects: Vec<(Key, Dot)> = Vec::new();
     for (first, second) in pairs(report.between, table, scenario) {
         // One difference an approach: identified by its colour.
-        if effects.iter().any(|(_, dot)| dot.approach == first) {
+        if effects.iter().any(|(_, dot)| dot.color == labels::color(first)) {
             continue;
         }
         for ours in [true, false] {
@@ -64,13 +65,13 @@ fn effects(report: &Report<'_>, table: u8, scenario: Scenario, measure: Measure)
             };
             let Some((a, b)) = row(first).zip(row(second)) else { continue };
             let (Some(x), Some(y)) = (measure.value(a), measure.value(b)) else { continue };
-            let Some(reach) = difference(measure, a, b) else { continue };
+            let Some(interval) = difference(measure, a, b) else { continue };
             let dot = Dot {
-                approach: first,
-                ours,
+                color: labels::color(first),
+                is_filled: ours,
                 value: x - y,
-                reach: Some((reach.low, reach.high)),
-                text: numbers::signed(x - y, 1),
+                interval: Some((interval.low, interval.high)),
+                text: signed(x - y, 1),
             };
             effects.push((key(first, second, ours), dot));
         }
@@ -79,7 +80,7 @@ fn effects(report: &Report<'_>, table: u8, scenario: Scenario, measure: Measure)
 }
 
 fn key(first: Approach, second: Approach, ours: bool) -> Key {
-    let pair = format!("{} − {}", description::approach(first), description::approach(second));
+    let pair = format!("{} − {}", labels::approach(first), labels::approach(second));
     let label = if ours { pair } else { format!("{pair}, the paper’s") };
-    Key { label, color: description::color(first), filled: ours, shape: Shape::Dot }
+    Key { label, color: labels::color(first), is_filled: ours, shape: Shape::Dot }
 }

@@ -1,15 +1,14 @@
-//! `uses`: plot of the use of each case. How often it was played, and how its plays ended; a panel a kind of
-//! trial, the most played first.
+//! `uses`: plot of how often each case was played and how its plays ended; a panel a kind of trial, the most
+//! played first.
 
-use arena::{CycleEnd, Profile};
-use drawing::{Anchor, Font, Svg, Theme};
+use arena::CycleEnd;
+use arena::Profile;
 use study::evaluation::CaseUse;
+use figures::{AXIS_HEIGHT, Anchor, Axis, Figure, Font, Key, PANEL_WIDTH, Panel, Shape, Svg, Theme};
 
-use super::axis::{Axis, BELOW};
-use super::{Figure, Key, PANEL, Panel, Shape};
-use crate::{Report, description};
+use crate::{Report, labels};
 
-/// Of the simulated trials.
+/// The plot of the simulated trials.
 pub(super) fn figure(report: &Report<'_>) -> Figure {
     let mut kinds: Vec<Vec<&CaseUse>> = Vec::new();
     for case in report.uses.iter().filter(|case| case.profile == Profile::Simulated) {
@@ -26,9 +25,8 @@ pub(super) fn figure(report: &Report<'_>) -> Figure {
         cases.sort_by_key(|case| std::cmp::Reverse(case.retrieved));
         panel(&cases, never)
     });
-    let bar = |color, label: &str| Key { label: label.to_owned(), color, filled: true, shape: Shape::Bar };
+    let bar = |color, label: &str| Key { label: label.to_owned(), color, is_filled: true, shape: Shape::Bar };
     Figure {
-        table: 3,
         name: "table-3-plays".to_owned(),
         title: "What became of each case: how its plays ended, and how many there were".to_owned(),
         keys: ENDS.iter().map(|(color, label, _)| bar(color, label)).collect(),
@@ -40,16 +38,16 @@ fn panel(cases: &[&CaseUse], never: usize) -> Option<Panel> {
     let first = cases.first()?;
     let colors = Theme::Light.colors();
     let mut svg = Svg::default();
-    let axis = Axis::up_to(100.0, LEFT, PANEL - RIGHT);
-    let bottom = -ROW * cases.len() as f64;
-    axis.draw(&mut svg, 0.0, bottom, "% of its plays");
+    let axis = Axis::linear([0.0, 100.0], [BARS_LEFT, PANEL_WIDTH - NUMBERS_WIDTH]);
+    let bottom = -BAR_HEIGHT * cases.len() as f64;
+    axis.draw_below(&mut svg, 0.0, bottom, "% of its plays");
     let font = Font { size: 11.5, fill: colors.ink, bold: false, halo: None };
     for (i, case) in cases.iter().enumerate() {
-        let (top, low) = (-ROW * i as f64 - 1.5, -ROW * (i + 1) as f64 + 1.5);
-        svg.text([LEFT - 6.0, low + 2.5], &case.case, Anchor::End, font);
+        let (top, low) = (-BAR_HEIGHT * i as f64 - 1.5, -BAR_HEIGHT * (i + 1) as f64 + 1.5);
+        svg.text([BARS_LEFT - 6.0, low + 2.5], &case.case, Anchor::End, font);
         let mut share = 0.0;
-        for (color, _, description) in &ENDS {
-            let plays = ends(case, description);
+        for (color, _, names) in &ENDS {
+            let plays = ends(case, names);
             let (from, to) = (share, share + 100.0 * f64::from(plays) / f64::from(case.retrieved));
             if plays > 0 {
                 let corner = [axis.place(from), low];
@@ -57,25 +55,24 @@ fn panel(cases: &[&CaseUse], never: usize) -> Option<Panel> {
             }
             share = to;
         }
-        svg.text([PANEL, low + 2.5], &case.retrieved.to_string(), Anchor::End, font);
+        svg.text([PANEL_WIDTH, low + 2.5], &case.retrieved.to_string(), Anchor::End, font);
     }
     let font = Font { size: 11.5, fill: colors.faint, bold: false, halo: None };
-    svg.text([PANEL, 6.0], "plays", Anchor::End, font);
+    svg.text([PANEL_WIDTH, 6.0], "plays", Anchor::End, font);
     if never > 0 {
         svg.text([0.0, bottom - 31.0], &format!("{never} never played"), Anchor::Start, font);
     }
-    let (approach, against) =
-        (description::approach(first.approach), description::opponents(first.configuration));
+    let (approach, against) = (labels::approach(first.approach), labels::opponents(first.configuration));
     let title = format!("Cases of {approach} attackers, against {against}");
-    Some(Panel { title, svg, height: -bottom + BELOW })
+    Some(Panel { title, svg, height: -bottom + AXIS_HEIGHT })
 }
 
 /// Plays that ended with one of these; without any, with an end that has no colour of its own.
-fn ends(case: &CaseUse, description: &[&str]) -> u32 {
+fn ends(case: &CaseUse, names: &[&str]) -> u32 {
     let all = CycleEnd::DESCRIPTION.iter().zip(case.ends);
-    let own = all.filter(|(label, _)| match description {
-        [] => !ENDS.iter().any(|(_, _, description)| description.contains(*label)),
-        description => description.contains(*label),
+    let own = all.filter(|(label, _)| match names {
+        [] => !ENDS.iter().any(|(_, _, names)| names.contains(*label)),
+        names => names.contains(*label),
     });
     own.map(|(_, plays)| plays).sum()
 }
@@ -90,12 +87,12 @@ const ENDS: [(&str, &str, &[&str]); 7] = [
     ("#8c8c8c", "anything else", &[]),
     ("#c4c4c4", "the trial was over", &["trial-over"]),
 ];
-/// Where bars start, px: after the cases' names.
-const LEFT: f64 = 176.0;
+/// Left end of the bars, px: behind the cases' names.
+const BARS_LEFT: f64 = 176.0;
 /// Space for the number of plays, px.
-const RIGHT: f64 = 52.0;
+const NUMBERS_WIDTH: f64 = 52.0;
 /// Height of a bar with the gap to the next, px.
-const ROW: f64 = 15.0;
+const BAR_HEIGHT: f64 = 15.0;
 
 #[cfg(test)]
 mod tests {
@@ -117,12 +114,12 @@ mod tests {
             trials: 9,
             outcomes: [0; 5],
         };
-        let plays: Vec<_> = ENDS.iter().map(|(_, _, description)| ends(&case, description)).collect();
+        let plays: Vec<_> = ENDS.iter().map(|(_, _, names)| ends(&case, names)).collect();
         // Robot lost 4, ball at rest 7, timeout 8, no decision 9, unknown case 10, reassigned 11, game
         // stopped 12, superseded 13 are anything else.
         assert_eq!(plays, [1, 2, 3, 5, 6, 4 + 7 + 8 + 9 + 10 + 11 + 12 + 13, 14]);
         assert_eq!(plays.iter().sum::<u32>(), case.retrieved);
-        assert!(panel(&[&case], 3).unwrap().height > ROW);
+        assert!(panel(&[&case], 3).unwrap().height > BAR_HEIGHT);
         assert!(panel(&[], 34).is_none());
     }
 }

@@ -1,11 +1,10 @@
-//! `summary`: the tables as terminal text. Ours, the paper's in brackets, and under each scenario the
-//! differences between the approaches.
+//! `summary`: the paper's tables as text for terminals: ours, the paper's in brackets, and under each scenario
+//! the differences between the approaches.
 //!
 //! Stars are p after Holm's correction over the scenarios: * < 0.05, ** < 0.01, *** < 0.001. After a bracket
 //! they mean that ours differs from the paper's; in a line of differences, that the approaches differ.
 
-use std::fmt::Write as _;
-
+use figures::{Cell, Row, Table, row};
 use hil_sim::Scenario;
 
 use super::comparison::{Comparison, Measure};
@@ -106,78 +105,63 @@ pub fn summary(results: &Results) -> String {
         let of = |row: &&TableRow| (row.table, row.sample) == (table, sample);
         let rows: Vec<_> = results.tables.iter().filter(of).collect();
         if !rows.is_empty() {
-            write(&mut text, results, table, sample, &rows);
+            text += &table_text(results, table, sample, &rows);
         }
     }
     text
 }
 
-fn write(text: &mut String, results: &Results, table: u8, sample: Extent, rows: &[&TableRow]) {
-    let (title, columns) = layout(table);
+/// A table with its title.
+fn table_text(results: &Results, number: u8, sample: Extent, rows: &[&TableRow]) -> String {
+    let (title, columns) = layout(number);
     let least = rows.iter().map(|row| row.trials).min().unwrap_or_default();
     let most = rows.iter().map(|row| row.trials).max().unwrap_or_default();
     let trials = if least == most { most.to_string() } else { format!("{least} to {most}") };
     let world = &results.identity.world;
-    let _ = writeln!(
-        text,
-        "Table {table}: {title}; {trials} trials a row, world {world}, in brackets the paper's"
-    );
-    let mut lines = vec![Line { names: [""; 2].map(str::to_owned), cells: Vec::new() }];
-    lines[0].cells.extend(columns.iter().map(|column| (column.title.to_owned(), String::new())));
+    let heads = columns.iter().map(|column| figures::Column::number(column.title, ""));
+    let names = ["", ""].map(figures::Column::name);
+    let mut table = Table::new(names.into_iter().chain(heads));
     let mut scenarios: Vec<Scenario> = rows.iter().map(|row| row.scenario).collect();
     scenarios.dedup();
     for scenario in scenarios {
         for (place, row) in rows.iter().filter(|row| row.scenario == scenario).enumerate() {
             let name = if place == 0 { scenario.label() } else { "" };
-            let names = [name.to_owned(), approach_label(row.approach).to_owned()];
-            lines.push(Line { names, cells: columns.iter().map(|c| cell(results, row, c)).collect() });
+            let names = row![name, approach_label(row.approach)];
+            table.push(names.with(columns.iter().map(|column| cell(results, row, column))));
         }
-        let own = |c: &&Comparison| (c.table, c.sample, c.scenario) == (table, sample, scenario);
-        let differences: Vec<_> = results.between_approaches.iter().filter(own).collect();
-        let mut pairs: Vec<_> = differences.iter().map(|c| (c.first_approach, c.second_approach)).collect();
-        pairs.dedup();
         // Tables 2 and 3 have no compared measure.
-        for pair in pairs.into_iter().filter(|_| columns.iter().any(|column| column.measure.is_some())) {
-            let cells = columns.iter().map(|column| {
-                let of_pair = |c: &&&Comparison| {
-                    (c.first_approach, c.second_approach) == pair && Some(c.measure) == column.measure
-                };
-                differences
-                    .iter()
-                    .find(of_pair)
-                    .map_or_else(Default::default, |c| difference(c, column.decimals))
-            });
-            let name = format!("{} - {}", approach_label(pair.0), approach_label(pair.1));
-            lines.push(Line { names: [String::new(), name], cells: cells.collect() });
+        if columns.iter().any(|column| column.measure.is_some()) {
+            let own = |c: &&Comparison| (c.table, c.sample, c.scenario) == (number, sample, scenario);
+            let comparisons: Vec<_> = results.between_approaches.iter().filter(own).collect();
+            table.rows.extend(differences(&comparisons, &columns));
         }
     }
-    align(text, &lines);
+    format!(
+        "Table {number}: {title}; {trials} trials a row, world {world}, in brackets the paper's\n{}\n",
+        table.text()
+    )
 }
 
-/// A line of a table; a cell has a part that is right-aligned in its column, and a part that follows.
-struct Line {
-    names: [String; 2],
-    cells: Vec<(String, String)>,
-}
-
-fn align(text: &mut String, lines: &[Line]) {
-    let widest = |of: &dyn Fn(&Line) -> usize| lines.iter().map(of).max().unwrap_or_default();
-    let names = [0, 1].map(|i| widest(&|line| line.names[i].len()));
-    let columns = lines.first().map_or(0, |line| line.cells.len());
-    let left: Vec<_> = (0..columns).map(|i| widest(&|line| line.cells[i].0.len())).collect();
-    let right: Vec<_> = (0..columns).map(|i| widest(&|line| line.cells[i].1.len())).collect();
-    for Line { names: [first, second], cells } in lines {
-        let mut line = format!("  {first:0$}  {second:1$}", names[0], names[1]);
-        for (i, (value, rest)) in cells.iter().enumerate() {
-            let _ = write!(line, "  {value:>0$} {rest:1$}", left[i], right[i]);
-        }
-        let _ = writeln!(text, "{}", line.trim_end());
+/// A line for each pair of approaches that is compared.
+fn differences(comparisons: &[&Comparison], columns: &[Column]) -> Vec<Row> {
+    let mut pairs: Vec<_> = comparisons.iter().map(|c| (c.first_approach, c.second_approach)).collect();
+    pairs.dedup();
+    let mut rows = Vec::new();
+    for pair in pairs {
+        let cells = columns.iter().map(|column| {
+            let of_pair = |c: &&&Comparison| {
+                (c.first_approach, c.second_approach) == pair && Some(c.measure) == column.measure
+            };
+            comparisons.iter().find(of_pair).map_or(Cell::GAP, |c| difference(c, column.decimals))
+        });
+        let name = format!("{} - {}", approach_label(pair.0), approach_label(pair.1));
+        rows.push(row!["", name].with(cells));
     }
-    text.push('\n');
+    rows
 }
 
 /// Ours, and the paper's in brackets.
-fn cell(results: &Results, row: &TableRow, column: &Column) -> (String, String) {
+fn cell(results: &Results, row: &TableRow, column: &Column) -> Cell {
     let number = |value: f64| format!("{value:.*}", column.decimals);
     let key = |row: &TableRow| (row.table, row.scenario, row.approach);
     let printed = paper().iter().find(|other| key(other) == key(row)).and_then(|other| (column.value)(other));
@@ -192,12 +176,13 @@ fn cell(results: &Results, row: &TableRow, column: &Column) -> (String, String) 
             && Some(c.measure) == column.measure
     };
     let marks = results.with_paper.iter().find(own).map_or("", |c| stars(c.p_holm));
-    ((column.value)(row).map_or_else(|| "-".to_owned(), number), printed + marks)
+    let value = (column.value)(row).map_or_else(|| "-".to_owned(), number);
+    Cell::marked(value, marks).beside(printed)
 }
 
-fn difference(comparison: &Comparison, decimals: usize) -> (String, String) {
+fn difference(comparison: &Comparison, decimals: usize) -> Cell {
     let value = comparison.first - comparison.second;
-    (format!("{value:+.decimals$}"), stars(comparison.p_holm).to_owned())
+    Cell::marked(format!("{value:+.decimals$}"), stars(comparison.p_holm))
 }
 
 #[cfg(test)]
@@ -211,7 +196,7 @@ mod tests {
     use brain::Approach;
 
     #[test]
-    fn ours_stands_beside_the_papers_with_how_sure_the_difference_is() {
+    fn ours_is_beside_the_papers_with_the_stars_of_the_difference() {
         // 27 of 30 against the paper's 26 % of 500: surely more. cbr − reactive: 90 − 80 %, z = 1.08.
         let goals = |approach, goals: usize| {
             (0..30).map(move |i| {

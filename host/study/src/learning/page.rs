@@ -4,9 +4,10 @@ use std::fmt::Write as _;
 
 use arena::Profile;
 use casebase::Symmetry;
-use drawing::Theme;
-use drawing::cases::{CasePicture, case_picture};
-use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
+use figures::{
+    AXIS_HEIGHT, Axis, CasePicture, Column, Page, Row, Svg, Table, Theme, case_picture, mark_style, row,
+};
+use maud::{Markup, PreEscaped, html as markup};
 use serde_json::{Value, json as value};
 
 use crate::learning::paired::WorldPairs;
@@ -111,70 +112,74 @@ pub fn summary(learned: &Learned) -> String {
 
 /// The report as one HTML page without scripts.
 pub fn html(learned: &Learned) -> String {
-    let (settings, diff) = (&learned.settings, learned.diff());
-    let as_robots = learned.curve.iter().any(|point| point.to_goal_robots.is_some());
-    let page = markup! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Learned cases" }
-                style { (STYLE) }
+    let diff = learned.diff();
+    let main = markup! {
+        @if !learned.curve.is_empty() {
+            h2 { "Learning curve on held-out starts" }
+            (PreEscaped(curve(&learned.curve)))
+            (curve_table(&learned.curve).html("Learning curve", ""))
+        }
+        @if !learned.plays.is_empty() {
+            h2 { "Plays to watch" }
+            p {
+                "Held-out starts that the learned library brings to goal and the one before does not. In the "
+                "directory of this report:"
             }
-            body {
-                h1 { "Learned cases" }
-                p {
-                    (learned.accepted().count()) " of " (learned.changes.len()) " proposed changes accepted, "
-                    (learned.spent) " " (learned.played()) ", seed " (settings.seed) ", expected share of wrong changes at most "
-                    (settings.error_rate) " over " (settings.tries) " tests."
-                    @if !settings.refused.is_empty() {
-                        " Changes refused by hand, not proposed: " (settings.refused.len()) "."
-                    }
-                    @if settings.shuffle { " Null control: chance decides every pair." }
-                }
-                @if !learned.curve.is_empty() {
-                    h2 { "Learning curve on held-out starts" }
-                    (curve(learned))
-                    table {
-                        tr { th { "round" } th { "trials" } th { "to goal %" } th { "random starts %" } @if as_robots { th { "as robots %" } } th { "touches" } }
-                        @for point in &learned.curve {
-                            tr {
-                                td { (point.round) } td { (point.spent) } td { (format!("{:.2}", point.to_goal)) }
-                                td { (format!("{:.2}", point.to_goal_random)) } @if as_robots { td { (robots(point)) } }
-                                td { (format!("{:.3}", point.touches)) }
-                            }
-                        }
-                    }
-                }
-                @if !learned.plays.is_empty() {
-                    h2 { "Plays to watch" }
-                    p {
-                        "Held-out starts that the learned library brings to goal and the one before does not. In the "
-                        "directory of this report:"
-                    }
-                    @for play in &learned.plays { pre { (play.command(&learned.end.files.league)) } }
-                }
-                h2 { "Accepted" }
-                @if learned.accepted().next().is_none() { p { "None: the learned library is the one before." } }
-                @for change in learned.accepted() { (accepted(learned, change)) }
-                @if !learned.end.changed_settings().is_empty() {
-                    h2 { "Settings of retrieval" }
-                    p {
-                        "They are no part of the library: robots take them with "
-                        @for setting in learned.end.changed_settings() { code { "--set " (setting) } " " }
-                    }
-                }
-                @if !diff.is_empty() {
-                    h2 { "Difference of the library" }
-                    pre.diff { @for line in diff.lines() { span class=(line_class(line)) { (line) "\n" } } }
-                }
-                h2 { "All proposals" }
-                (table(learned))
+            @for play in &learned.plays { pre { (play.command(&learned.end.files.league)) } }
+        }
+        h2 { "Accepted" }
+        @if learned.accepted().next().is_none() { p { "None: the learned library is the one before." } }
+        @for change in learned.accepted() { (accepted(learned, change)) }
+        @if !learned.end.changed_settings().is_empty() {
+            h2 { "Settings of retrieval" }
+            p {
+                "They are no part of the library: robots take them with "
+                @for setting in learned.end.changed_settings() { code { "--set " (setting) } " " }
             }
         }
+        @if !diff.is_empty() {
+            h2 { "Difference of the library" }
+            pre.diff { @for line in diff.lines() { span class=(line_class(line)) { (line) "\n" } } }
+        }
+        h2 { "All proposals" }
+        (proposals(learned).html("All proposals", "proposals"))
     };
-    page.into_string()
+    Page { title: "Learned cases", style: STYLE.to_owned(), header: lead(learned), main }.html()
+}
+
+/// What was proposed, accepted and played.
+fn lead(learned: &Learned) -> Markup {
+    let settings = &learned.settings;
+    markup! {
+        p.lead {
+            (learned.accepted().count()) " of " (learned.changes.len()) " proposed changes accepted, "
+            (learned.spent) " " (learned.played()) ", seed " (settings.seed) ", expected share of wrong changes at most "
+            (settings.error_rate) " over " (settings.tries) " tests."
+            @if !settings.refused.is_empty() {
+                " Changes refused by hand, not proposed: " (settings.refused.len()) "."
+            }
+            @if settings.shuffle { " Null control: chance decides every pair." }
+        }
+    }
+}
+
+/// The points of the learning curve.
+fn curve_table(curve: &[CurvePoint]) -> Table {
+    let as_robots = curve.iter().any(|point| point.to_goal_robots.is_some());
+    let mut columns = vec![
+        Column::number("round", ""),
+        Column::number("trials", ""),
+        Column::number("to goal", "%"),
+        Column::number("random starts", "%"),
+    ];
+    columns.extend(as_robots.then(|| Column::number("as robots", "%")));
+    columns.push(Column::number("touches", ""));
+    let rows = curve.iter().map(|point| {
+        let shares = [point.to_goal, point.to_goal_random].map(|share| format!("{share:.2}"));
+        let row = row![point.round, point.spent].with(shares);
+        row.with(as_robots.then(|| robots(point))).with([format!("{:.3}", point.touches)])
+    });
+    Table::new(columns).with_rows(rows)
 }
 
 fn accepted(learned: &Learned, change: &ChangeRecord) -> Markup {
@@ -199,18 +204,16 @@ fn accepted(learned: &Learned, change: &ChangeRecord) -> Markup {
     }
 }
 
-fn table(learned: &Learned) -> Markup {
-    markup! {
-        table {
-            tr { th { "round" } th { "kind" } th { "change" } th { "why tried" } th { "evidence" } th { "verdict" } }
-            @for change in &learned.changes {
-                tr {
-                    td { (change.round) } td { (change.proposal.kind.label()) } td { (change.proposal.edit.to_string()) }
-                    td { (change.proposal.reason) } td { (evidence(learned, change)) } td.word { (verdict(change.verdict)) }
-                }
-            }
-        }
-    }
+/// Every change that was proposed, with its evidence.
+fn proposals(learned: &Learned) -> Table {
+    let heads = ["kind", "change", "why tried", "evidence", "verdict"];
+    let columns = [Column::number("round", "")].into_iter().chain(heads.map(Column::text));
+    let rows = learned.changes.iter().map(|change| -> Row {
+        let proposal = &change.proposal;
+        let (evidence, verdict) = (evidence(learned, change), verdict(change.verdict));
+        row![change.round, proposal.kind.label(), proposal.edit, proposal.reason, evidence, verdict]
+    });
+    Table::new(columns).with_rows(rows)
 }
 
 /// The style of a line of a unified diff.
@@ -248,12 +251,12 @@ fn robots(point: &CurvePoint) -> String {
     point.to_goal_robots.map_or_else(String::new, |robots| format!("{robots:.2}"))
 }
 
-/// What a gain is counted in.
+/// Unit of a gain.
 fn gained(learned: &Learned) -> &'static str {
     if learned.opponents.is_empty() { "points" } else { "goals in 100 scenes" }
 }
 
-/// What a validation played.
+/// Unit of a validation's pairs, at the end of its sentence.
 fn validated(learned: &Learned) -> &'static str {
     if learned.opponents.is_empty() { " starts." } else { " matches." }
 }
@@ -272,7 +275,7 @@ const fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
-/// A case as a library has it; none where it lacks the case.
+/// Figure of a case of a library; `None` where it lacks the case.
 fn picture(variant: &Variant, name: &str) -> Option<String> {
     let base = variant.base();
     let number = variant.names().iter().position(|known| known == name)?;
@@ -282,36 +285,34 @@ fn picture(variant: &Variant, name: &str) -> Option<String> {
     Some(case_picture(&picture))
 }
 
-/// The curve as an SVG.
-fn curve(learned: &Learned) -> Markup {
-    let last = learned.curve.last().map_or(1, |point| point.spent).max(1) as f64;
-    let values = learned.curve.iter().map(|point| point.to_goal);
-    let (low, high) = values.fold((100.0_f64, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
-    let (low, high) = (low - 2.0, high + 2.0);
-    let place =
-        |spent: u64, v: f64| (60.0 + 520.0 * spent as f64 / last, 180.0 - 160.0 * (v - low) / (high - low));
-    let places = learned.curve.iter().map(|point| place(point.spent, point.to_goal));
-    let places: Vec<_> = places.map(|(x, y)| (format!("{x:.1}"), format!("{y:.1}"))).collect();
-    let line: Vec<String> = places.iter().map(|(x, y)| format!("{x},{y}")).collect();
-    let spent = learned.curve.last().map_or(0, |point| point.spent);
-    markup! {
-        svg viewBox="0 0 600 225" width="600" role="img" aria-label="percent to goal over trials" {
-            path d="M60 10V190H590" fill="none" stroke="#888" {}
-            polyline fill="none" stroke="#1a6fb5" stroke-width="2" points=(line.join(" ")) {}
-            @for (x, y) in &places { circle cx=(x) cy=(y) r="3.5" fill="#1a6fb5" {} }
-            g font-size="13" {
-                text x="54" y="24" text-anchor="end" { (format!("{high:.1} %")) }
-                text x="54" y="184" text-anchor="end" { (format!("{low:.1} %")) }
-                text x="60" y="208" { "0" }
-                text x="580" y="208" text-anchor="end" { (spent) " trials" }
-            }
-        }
+/// Share of held-out starts to goal over the trials spent, as an SVG.
+fn curve(points: &[CurvePoint]) -> String {
+    let colors = Theme::Light.colors();
+    let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
+    for point in points {
+        (low, high) = (low.min(point.to_goal), high.max(point.to_goal));
     }
+    let trials = points.last().map_or(1, |point| point.spent).max(1) as f64;
+    let across = Axis::linear([0.0, trials], [0.0, CURVE_SIZE[0]]);
+    let up = Axis::linear([low, high], [0.0, CURVE_SIZE[1]]);
+    let mut svg = Svg::default();
+    across.draw_below(&mut svg, CURVE_SIZE[1], 0.0, "trials");
+    up.draw_beside(&mut svg, 0.0, CURVE_SIZE[0]);
+    let places: Vec<_> =
+        points.iter().map(|point| [across.place(point.spent as f64), up.place(point.to_goal)]).collect();
+    svg.polyline(&places, format!(r#"stroke="{}" stroke-width="2""#, colors.team));
+    for place in places {
+        svg.circle(place, 3.5, mark_style(colors.team, true));
+    }
+    let (lower, upper) = ([-48.0, -AXIS_HEIGHT], [CURVE_SIZE[0] + 30.0, CURVE_SIZE[1] + 12.0]);
+    svg.finish(lower, upper, 1.0, colors.paper, "percent to goal over trials")
 }
 
-const STYLE: &str = "body{font:15px sans-serif;max-width:70em;margin:2em auto;padding:0 1em}\
-    table{border-collapse:collapse}.word{white-space:nowrap}pre{overflow-x:auto}\
-    .file{font-weight:bold}.old{color:#a11}.new{color:#070}\
-    td,th{padding:.2em .6em;text-align:left;border-bottom:1px solid #ccc;vertical-align:top}\
-    .pictures{display:flex;gap:1em}.pictures svg{width:100%;height:auto}\
-    figure{margin:0;flex:1;max-width:50%}pre{background:#f4f4f4;padding:1em}";
+/// Width and height of the learning curve, px.
+const CURVE_SIZE: [f64; 2] = [520.0, 160.0];
+
+/// Rules of style beside those of every page.
+const STYLE: &str = "pre{overflow-x:auto;background:var(--band);padding:1em}\
+    .file{font-weight:bold}.old{color:var(--bad)}.new{color:var(--good)}\
+    .proposals tr > .label{min-width:0}.proposals tr > .label:last-child{white-space:nowrap}\
+    .pictures{display:flex;gap:1em}.pictures svg{width:100%}.pictures figure{margin:0;flex:1;max-width:50%}";

@@ -1,8 +1,10 @@
-//! `description`: match results as Markdown tables. Markdown tables, for terminals and documents alike: ours
-//! beside the paper's Tables 1 and 2 (Biswas et al. 2014 §6), passes, fouls, and what each part is worth.
+//! `description`: match results as Markdown tables, for terminals and documents alike: ours beside the paper's
+//! Tables 1 and 2 (Biswas et al. 2014 §6), passes, fouls, and what each part is worth.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
+
+use figures::{Cell, Row, Table, row};
 
 use super::case_table::case_tables;
 use super::comparison::MatchComparison;
@@ -11,28 +13,22 @@ use super::match_team::MatchTeam;
 use super::outcome::{Estimate, Outcome};
 use super::paper::{PAPER, PAPER_PASSES};
 use super::passes::{Passes, Share};
-use super::plan::Pairing;
 use arena::attack::PossessionEnd as E;
 
 /// All tables; `ours` are the passes of our team.
 pub fn markdown(outcomes: &[Outcome], effects: &[Effect], ours: &Passes) -> String {
-    let mut text = String::new();
-    worth(&mut text, effects);
-    standings(&mut text, outcomes);
-    scores(&mut text, outcomes);
-    play(&mut text, outcomes);
-    attack(&mut text, outcomes);
+    let first = [worth(effects), standings(outcomes), Some(scores(outcomes)), Some(play(outcomes))];
+    let last = [passes(outcomes), planned(outcomes), calibration(ours), fouls(outcomes)];
+    let mut text: String = first.into_iter().flatten().map(|table| below(&table)).collect();
+    text += &attack(outcomes);
     text += &case_tables(outcomes);
-    passes(&mut text, outcomes);
-    planned(&mut text, outcomes);
-    calibration(&mut text, ours);
-    fouls(&mut text, outcomes);
+    text.extend(last.iter().map(below));
     text.trim_start().to_owned()
 }
 
-/// Writing to a String cannot fail.
-macro_rules! print {
-    ($text:expr, $($description:tt)*) => {{ let _ = writeln!($text, $($description)*); }};
+/// A table below other text.
+fn below(table: &Table) -> String {
+    format!("\n{}", table.markdown())
 }
 
 /// Whether these are our matches against others, as the paper's tables are.
@@ -41,143 +37,157 @@ fn as_the_papers(outcomes: &[Outcome]) -> bool {
     outcomes.iter().all(|o| o.own.team == ours && o.opponent.team != ours)
 }
 
-fn worth(text: &mut String, effects: &[Effect]) {
-    if effects.is_empty() {
-        return;
-    }
-    *text += "\n| part | with it | without | matches | goals a match, difference | p | shots a match, difference | p | offence ratio | p | attack ratio | p |\n\
-              |---|---|---|---|---|---|---|---|---|---|---|---|\n";
+/// What each part of our play is worth; `None` without effects.
+fn worth(effects: &[Effect]) -> Option<Table> {
+    let mut table = Table::of_texts(
+        "part | with it | without | matches | goals a match, difference | p | shots a match, difference | p | offence ratio | p | attack ratio | p",
+    );
     for e in effects {
-        let cells = [e.goals, e.shots, e.offence_ratio, e.attack_ratio].map(changed).join(" | ");
-        print!(text, "| {} | {} | {} | {} | {cells} |", e.part, e.with, e.without, e.matches);
+        let changes = [e.goals, e.shots, e.offence_ratio, e.attack_ratio].map(change_and_p);
+        table.push(row![e.part, e.with, e.without, e.matches].with(changes.into_iter().flatten()));
     }
+    (!effects.is_empty()).then_some(table)
 }
 
 /// The table of the same matches by two programs, case bases or settings.
 pub fn comparison_table(found: &[MatchComparison]) -> String {
-    let mut text = String::from(
-        "| team | against | matches | goals before | goals now | goals a match, difference | p | smallest effect seen | shots a match, difference | p |\n\
-         |---|---|---|---|---|---|---|---|---|---|\n",
+    let mut table = Table::of_texts(
+        "team | against | matches | goals before | goals now | goals a match, difference | p | smallest effect seen | shots a match, difference | p",
     );
     for b in found {
-        let teams = b.pairing.map_or_else(
-            || "all | all".to_owned(),
-            |Pairing { own, opponent }| format!("{own} | {opponent}"),
+        let [own, opponent] = b.pairing.map_or_else(
+            || ["all", "all"].map(str::to_owned),
+            |pairing| [pairing.own, pairing.opponent].map(|team| team.to_string()),
         );
-        let ([for_before, against_before], [for_now, against_now]) = (b.goals_before, b.goals_after);
         let smallest = b.detectable_goals.map_or_else(|| "–".to_owned(), |goals| format!("{goals:.2}"));
-        let [goals, shots] = [b.goals, b.shots].map(|change| changed(Some(change)));
-        print!(
-            text,
-            "| {teams} | {} | {for_before} : {against_before} | {for_now} : {against_now} | {goals} | {smallest} | {shots} |",
-            b.goals.matches
-        );
+        let row = row![own, opponent, b.goals.matches, score(b.goals_before), score(b.goals_after)];
+        let row = row.with(change_and_p(Some(b.goals))).with([smallest]);
+        table.push(row.with(change_and_p(Some(b.shots))));
     }
-    text
+    table.markdown()
 }
 
-/// Standings over all matches of each team, where one plays several opponents.
-fn standings(text: &mut String, outcomes: &[Outcome]) {
-    let mut teams: Vec<(MatchTeam, [u32; 3], [u32; 2])> = Vec::new();
-    for o in outcomes {
-        let [won, drawn, lost] = o.won_drawn_lost;
-        let [goals, against] = o.goals;
-        for (who, ends, goals) in [
-            (o.own, [won, drawn, lost], [goals, against]),
-            (o.opponent, [lost, drawn, won], [against, goals]),
-        ] {
-            let known = teams.iter().position(|(team, ..)| *team == who).unwrap_or(teams.len());
-            if known == teams.len() {
-                teams.push((who, [0; 3], [0; 2]));
-            }
-            for (sum, n) in teams[known].1.iter_mut().zip(ends) {
-                *sum += n;
-            }
-            for (sum, n) in teams[known].2.iter_mut().zip(goals) {
-                *sum += n;
-            }
+/// `12 : 3`.
+fn score<N: std::fmt::Display>([goals, against]: [N; 2]) -> String {
+    format!("{goals} : {against}")
+}
+
+/// `3, 1, 0`.
+fn listed([won, drawn, lost]: [u32; 3]) -> String {
+    format!("{won}, {drawn}, {lost}")
+}
+
+/// Results of one team in all its matches.
+struct Standing {
+    team: MatchTeam,
+    won_drawn_lost: [u32; 3],
+    goals: [u32; 2],
+}
+
+impl Standing {
+    fn points(&self) -> u32 {
+        let [won, drawn, _] = self.won_drawn_lost;
+        3 * won + drawn
+    }
+
+    /// Adds the results of one pair to those of `team`.
+    fn add(standings: &mut Vec<Self>, team: MatchTeam, won_drawn_lost: [u32; 3], goals: [u32; 2]) {
+        let known = standings.iter().position(|standing| standing.team == team);
+        let place = known.unwrap_or_else(|| {
+            standings.push(Self { team, won_drawn_lost: [0; 3], goals: [0; 2] });
+            standings.len() - 1
+        });
+        let standing = &mut standings[place];
+        for (sum, n) in standing.won_drawn_lost.iter_mut().zip(won_drawn_lost) {
+            *sum += n;
+        }
+        for (sum, n) in standing.goals.iter_mut().zip(goals) {
+            *sum += n;
         }
     }
-    // Each against each: the number of pairs is that of a round robin.
-    if teams.len() < 3 || outcomes.len() != teams.len() * (teams.len() - 1) / 2 {
-        return;
-    }
-    let points = |[won, drawn, _]: [u32; 3]| 3 * won + drawn;
-    // The sort keeps the plan's order among equals.
-    teams.sort_by_key(|(_, ends, [goals, against])| {
-        std::cmp::Reverse((points(*ends), i64::from(*goals) - i64::from(*against)))
-    });
-    *text += "\n| team | matches | won, drawn, lost | goals | points |\n|---|---|---|---|---|\n";
-    for (team, [won, drawn, lost], [goals, against]) in teams {
-        let (matches, points) = (won + drawn + lost, points([won, drawn, lost]));
-        print!(text, "| {team} | {matches} | {won}, {drawn}, {lost} | {goals} : {against} | {points} |");
-    }
 }
 
-fn scores(text: &mut String, outcomes: &[Outcome]) {
-    *text += "\n| team | against | matches | won, drawn, lost | goals | goals a match | against a match | p | offence ratio | attack ratio | of all shots |\n\
-              |---|---|---|---|---|---|---|---|---|---|---|\n";
+/// Standings over all matches of each team; `None` unless each plays against each.
+fn standings(outcomes: &[Outcome]) -> Option<Table> {
+    let mut teams: Vec<Standing> = Vec::new();
     for o in outcomes {
-        let [won, drawn, lost] = o.won_drawn_lost;
-        let [goals, against] = o.goals;
-        let cells = [o.goals_for, o.goals_against].map(estimate_text).join(" | ");
-        let ratios = [o.offence_ratio, o.attack_ratio].map(estimate_text).join(" | ");
-        let all = o.attack_ratio_of_all.map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}"));
-        print!(
-            text,
-            "| {} | {} | {} | {won}, {drawn}, {lost} | {goals} : {against} | {cells} | {} | {ratios} | {all} |",
+        let ([won, drawn, lost], [goals, against]) = (o.won_drawn_lost, o.goals);
+        Standing::add(&mut teams, o.own, [won, drawn, lost], [goals, against]);
+        Standing::add(&mut teams, o.opponent, [lost, drawn, won], [against, goals]);
+    }
+    // The number of pairs is that of a round robin.
+    if teams.len() < 3 || outcomes.len() != teams.len() * (teams.len() - 1) / 2 {
+        return None;
+    }
+    // The sort keeps the plan's order among equals.
+    teams.sort_by_key(|standing| {
+        let [goals, against] = standing.goals.map(i64::from);
+        Reverse((standing.points(), goals - against))
+    });
+    let rows = teams.iter().map(|standing| {
+        let matches: u32 = standing.won_drawn_lost.iter().sum();
+        let (ends, goals) = (listed(standing.won_drawn_lost), score(standing.goals));
+        row![standing.team, matches, ends, goals, standing.points()]
+    });
+    Some(Table::of_texts("team | matches | won, drawn, lost | goals | points").with_rows(rows))
+}
+
+fn scores(outcomes: &[Outcome]) -> Table {
+    let mut table = Table::of_texts(
+        "team | against | matches | won, drawn, lost | goals | goals a match | against a match | p | offence ratio | attack ratio | of all shots",
+    );
+    for o in outcomes {
+        table.push(row![
             o.own,
             o.opponent,
             o.matches,
-            chance(o.goals_p),
-        );
+            listed(o.won_drawn_lost),
+            score(o.goals),
+            estimate_text(o.goals_for),
+            estimate_text(o.goals_against),
+            p_text(o.goals_p),
+            estimate_text(o.offence_ratio),
+            estimate_text(o.attack_ratio),
+            o.attack_ratio_of_all.map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}")),
+        ]);
     }
     if as_the_papers(outcomes) {
         for game in PAPER {
-            let [goals, against] = game.goals;
-            print!(
-                text,
-                "| the paper's, Table 2 | Team {} ({}) | 1 | | {goals} : {against} | | | | {:.2} | {:.2} | {:.2} |",
-                game.opponent,
-                game.stage,
-                game.offence_ratio,
-                game.attack_ratio,
-                game.attack_ratio
-            );
+            let opponent = format!("Team {} ({})", game.opponent, game.stage);
+            let [offence, attack] =
+                [game.offence_ratio, game.attack_ratio].map(|ratio| format!("{ratio:.2}"));
+            let row = row!["the paper's, Table 2", opponent, 1, Cell::GAP, score(game.goals)];
+            table.push(row.with([Cell::GAP; 3]).with([offence, attack.clone(), attack]));
         }
     }
+    table
 }
 
-fn play(text: &mut String, outcomes: &[Outcome]) {
-    *text += "\n| team | against | shots | theirs | chances | theirs | possession | passes that arrived | theirs | balls lost | theirs | ball in play |\n\
-              |---|---|---|---|---|---|---|---|---|---|---|---|\n";
+fn play(outcomes: &[Outcome]) -> Table {
+    let mut table = Table::of_texts(
+        "team | against | shots | theirs | chances | theirs | possession | passes that arrived | theirs | balls lost | theirs | ball in play",
+    );
     for o in outcomes {
-        let [shots, chances] = [o.shots, o.chances].map(|both| both.map(estimate_text).join(" | "));
-        let [passes, losses] = [o.passes, o.losses].map(|both| both.map(estimate_text).join(" | "));
-        let [possession, in_play] = [o.possession, o.ball_in_play].map(estimate_text);
-        print!(
-            text,
-            "| {} | {} | {shots} | {chances} | {possession} | {passes} | {losses} | {in_play} |",
-            o.own,
-            o.opponent
-        );
+        let row = row![o.own, o.opponent].with(o.shots.map(estimate_text)).with(o.chances.map(estimate_text));
+        let row = row.with([estimate_text(o.possession)]).with(o.passes.map(estimate_text));
+        table.push(row.with(o.losses.map(estimate_text)).with([estimate_text(o.ball_in_play)]));
     }
+    table
 }
 
 /// How possessions end, where kicks go and what shots are worth, from the true world.
-fn attack(text: &mut String, outcomes: &[Outcome]) {
-    let rows: Vec<_> = outcomes
-        .iter()
-        .flat_map(|o| {
-            [(o.own, o.opponent, &o.attack[0]), (o.opponent, o.own, &o.attack[1])]
-                .map(|side| (side, o.matches))
-        })
-        .map(|((team, against, counts), matches)| AttackRow { team, against, counts, matches })
-        .collect();
-    *text += &attack_table(&rows);
+fn attack(outcomes: &[Outcome]) -> String {
+    let mut rows = Vec::new();
+    for o in outcomes {
+        for (team, against, counts) in [(o.own, o.opponent, &o.attack[0]), (o.opponent, o.own, &o.attack[1])]
+        {
+            rows.push(AttackRow { team, against, counts, matches: o.matches });
+        }
+    }
+    attack_table(&rows)
 }
 
-/// One team's sums of [`AttackCounts::named`](arena::attack::AttackCounts::named) against another.
+/// One team's sums of [`AttackCounts::named`](crate::attack::AttackCounts::named) against another.
 #[derive(Clone, Copy, Debug)]
 pub struct AttackRow<'a> {
     /// The team whose counts these are.
@@ -190,46 +200,48 @@ pub struct AttackRow<'a> {
     pub matches: u32,
 }
 
-/// The Markdown table of how possessions end, where kicks go and what shots are worth.
+/// The Markdown table of how possessions end, where kicks go and what shots are worth, below other text.
 pub fn attack_table(rows: &[AttackRow<'_>]) -> String {
-    let mut text = "\n| team | against | possessions a match | goal | shot | kick to an opponent | tackle | left | out | stopped | kicks a match | reach the team | shots over 3 m/s a match | goal closed | half open | volleys | score | left balls a match |\n\
-              |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n".to_owned();
-    for row in rows {
-        print!(
-            text,
-            "| {} | {} | {} |",
-            row.team,
-            row.against,
-            attack_cells(row.counts, row.matches).join(" | ")
-        );
-    }
-    text
+    let table = Table::of_texts(
+        "team | against | possessions a match | goal | shot | kick to an opponent | tackle | left | out | stopped | kicks a match | reach the team | shots over 3 m/s a match | goal closed | half open | volleys | score | left balls a match",
+    );
+    below(&table.with_rows(rows.iter().map(|row| row![row.team, row.against].with(row.cells()))))
 }
 
-fn attack_cells(counts: &BTreeMap<String, u32>, matches: u32) -> Vec<String> {
-    let sum = |which: &dyn Fn(&str) -> bool| {
-        counts.iter().filter(|(name, _)| which(name)).map(|(_, n)| *n).sum::<u32>()
-    };
-    let of = |name: &str| counts.get(name).copied().unwrap_or(0);
-    let a_match = |n: u32| format!("{:.1}", f64::from(n) / f64::from(matches.max(1)));
-    let share = |part: u32, whole: u32| match whole {
+impl AttackRow<'_> {
+    fn cells(&self) -> Vec<String> {
+        let possessions = self.sum(|name| name.starts_with("end."));
+        let ends = [E::Goal, E::Shot, E::KickToOpponent, E::Tackle, E::Left, E::Out, E::Referee];
+        let kicks = self.sum(|name| name.starts_with("kick."));
+        let reached = self.sum(|name| name.starts_with("kick.") && name.ends_with("/team"));
+        let shots = self.count("shot.closed") + self.count("shot.partly-open") + self.count("shot.open");
+        let of_shots = ["shot.closed", "shot.open", "shot.volley", "shot.goal"];
+        let mut cells = vec![self.a_match(possessions)];
+        cells.extend(ends.map(|end| percent(self.count(&format!("end.{}", end.label())), possessions)));
+        cells.extend([self.a_match(kicks), percent(reached, kicks), self.a_match(shots)]);
+        cells.extend(of_shots.map(|name| percent(self.count(name), shots)));
+        cells.push(self.a_match(self.count("left-ball")));
+        cells
+    }
+
+    fn count(&self, name: &str) -> u32 {
+        self.counts.get(name).copied().unwrap_or(0)
+    }
+
+    fn sum(&self, is_counted: impl Fn(&str) -> bool) -> u32 {
+        self.counts.iter().filter(|(name, _)| is_counted(name)).map(|(_, n)| *n).sum()
+    }
+
+    fn a_match(&self, count: u32) -> String {
+        format!("{:.1}", f64::from(count) / f64::from(self.matches.max(1)))
+    }
+}
+
+fn percent(part: u32, whole: u32) -> String {
+    match whole {
         0 => "–".to_owned(),
         whole => format!("{:.0} %", 100.0 * f64::from(part) / f64::from(whole)),
-    };
-    let possessions = sum(&|name| name.starts_with("end."));
-    let ends = [E::Goal, E::Shot, E::KickToOpponent, E::Tackle, E::Left, E::Out, E::Referee];
-    let ends = ends.map(|end| share(of(&format!("end.{}", end.label())), possessions));
-    let kicks = sum(&|name| name.starts_with("kick."));
-    let reached = sum(&|name| name.starts_with("kick.") && name.ends_with("/team"));
-    let shots = of("shot.closed") + of("shot.partly-open") + of("shot.open");
-    let of_shots =
-        ["shot.closed", "shot.open", "shot.volley", "shot.goal"].map(|name| share(of(name), shots));
-    let mut cells = vec![a_match(possessions)];
-    cells.extend(ends);
-    cells.extend([a_match(kicks), share(reached, kicks), a_match(shots)]);
-    cells.extend(of_shots);
-    cells.push(a_match(of("left-ball")));
-    cells
+    }
 }
 
 /// Each side of each pair, with its passes.
@@ -237,98 +249,79 @@ fn sides(outcomes: &[Outcome]) -> impl Iterator<Item = (MatchTeam, MatchTeam, &P
     outcomes.iter().flat_map(|o| [(o.own, o.opponent, &o.restarts[0]), (o.opponent, o.own, &o.restarts[1])])
 }
 
-fn passes(text: &mut String, outcomes: &[Outcome]) {
-    *text += "\n| passes of | against | kick | begun | kicked | arrived | share | by another mate | intercepted | missed | late | out |\n\
-              |---|---|---|---|---|---|---|---|---|---|---|---|\n";
-    for (who, against, passes) in sides(outcomes) {
+fn passes(outcomes: &[Outcome]) -> Table {
+    let mut table = Table::of_texts(
+        "passes of | against | kick | begun | kicked | arrived | share | by another mate | intercepted | missed | late | out",
+    );
+    for (team, against, passes) in sides(outcomes) {
         for kick in passes.kinds.iter().filter(|kick| kick.ordered > 0) {
             let (fates, arrived) = (&kick.fates, kick.arrived);
-            print!(
-                text,
-                "| {who} | {against} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
-                kick.kick,
-                kick.ordered,
-                arrived.of,
-                arrived.hits,
-                share(arrived),
-                fates.by_teammate,
-                fates.intercepted,
-                fates.missed,
-                fates.late,
-                fates.out
-            );
+            let row = row![team, against, kick.kick, kick.ordered, arrived.of, arrived.hits, share(arrived)];
+            let fates = [fates.by_teammate, fates.intercepted, fates.missed, fates.late, fates.out];
+            table.push(row.with(fates));
         }
     }
+    table
 }
 
-fn planned(text: &mut String, outcomes: &[Outcome]) {
-    *text += "\n| planned free kicks of | against | matches | passes tried | arrived | share | coercing robots re-used | arrived |\n\
-              |---|---|---|---|---|---|---|---|\n";
-    let matches = |who: MatchTeam, against: MatchTeam| {
-        let met = |o: &&Outcome| [(o.own, o.opponent), (o.opponent, o.own)].contains(&(who, against));
-        outcomes.iter().find(met).map_or(0, |o| o.matches)
-    };
+fn planned(outcomes: &[Outcome]) -> Table {
+    let mut table = Table::of_texts(
+        "planned free kicks of | against | matches | passes tried | arrived | share | coercing robots re-used | arrived",
+    );
     let ours = MatchTeam::ours().team;
     // Beside the paper's also where no plan was made; else only for teams that plan.
     let all = as_the_papers(outcomes);
-    for (who, against, passes) in sides(outcomes) {
-        if who.team != ours || !(all || who.tactics.coerce || passes.cap.attempts > 0) {
+    for (team, against, passes) in sides(outcomes) {
+        if team.team != ours || !(all || team.tactics.coerce || passes.cap.attempts > 0) {
             continue;
         }
         let (cap, arrived) = (&passes.cap, share(passes.cap_arrived));
-        print!(
-            text,
-            "| {who} | {against} | {} | {} | {} | {arrived} | {} | {} |",
-            matches(who, against),
-            cap.attempts,
-            cap.successes,
-            cap.reuses,
-            cap.reuse_successes
-        );
+        let row =
+            row![team, against, matches_of(outcomes, team, against), cap.attempts, cap.successes, arrived];
+        table.push(row.with([cap.reuses, cap.reuse_successes]));
     }
     if all {
         for row in PAPER_PASSES {
             let arrived = share(Share::new(row.successes, row.attempts));
-            print!(
-                text,
-                "| the paper's, Table 1 | Team {} | 1 | {} | {} | {arrived} | {} | |",
-                row.opponent,
-                row.attempts,
-                row.successes,
-                row.reuses
-            );
+            let opponent = format!("Team {}", row.opponent);
+            let paper =
+                row!["the paper's, Table 1", opponent, 1, row.attempts, row.successes, arrived, row.reuses];
+            table.push(paper.with([Cell::GAP]));
         }
     }
+    table
 }
 
-fn calibration(text: &mut String, ours: &Passes) {
-    *text += "\n| P(we have it) | passes | predicted | had | share |\n|---|---|---|---|---|\n";
+/// Number of matches of these teams, in either order.
+fn matches_of(outcomes: &[Outcome], team: MatchTeam, against: MatchTeam) -> u32 {
+    let pair =
+        outcomes.iter().find(|o| [(o.own, o.opponent), (o.opponent, o.own)].contains(&(team, against)));
+    pair.map_or(0, |o| o.matches)
+}
+
+fn calibration(ours: &Passes) -> Table {
+    let mut table = Table::of_texts("P(we have it) | passes | predicted | had | share");
     for tenth in &ours.calibration {
         let from = tenth.tenth as f64 / 10.0;
-        print!(
-            text,
-            "| {from:.1} to {:.1} | {} | {:.2} | {} | {} |",
-            from + 0.1,
-            tenth.seen.of,
-            tenth.predicted,
-            tenth.seen.hits,
-            share(tenth.seen)
-        );
+        let range = format!("{from:.1} to {:.1}", from + 0.1);
+        let predicted = format!("{:.2}", tenth.predicted);
+        table.push(row![range, tenth.seen.of, predicted, tenth.seen.hits, share(tenth.seen)]);
     }
     if let Some(error) = ours.calibration_error {
-        print!(text, "| mean distance | | | | {error:.3} |");
+        table.push(row!["mean distance"].with([Cell::GAP; 3]).with([format!("{error:.3}")]));
     }
+    table
 }
 
-fn fouls(text: &mut String, outcomes: &[Outcome]) {
-    *text += "\n| team | against | own fouls, all matches | theirs |\n|---|---|---|---|\n";
-    for o in outcomes {
+fn fouls(outcomes: &[Outcome]) -> Table {
+    let rows = outcomes.iter().map(|o| -> Row {
         let [own, theirs] = [0, 1].map(|side: usize| {
             let kinds = o.fouls[side].iter().map(|(kind, n)| format!("{n} {}", kind.replace('_', " ")));
             kinds.collect::<Vec<_>>().join(", ")
         });
-        print!(text, "| {} | {} | {own} | {theirs} |", o.own, o.opponent);
-    }
+        row![o.own, o.opponent, own, theirs]
+    });
+    Table::of_texts("team | against | own fouls, all matches | theirs").with_rows(rows)
 }
 
 /// `1.32 (1.10 to 1.54)`.
@@ -336,15 +329,15 @@ fn estimate_text(estimate: Option<Estimate>) -> String {
     estimate.map_or_else(|| "–".to_owned(), |e| within(e.mean, e.low, e.high))
 }
 
-/// The same of a share.
+/// `0.32 (0.10 to 0.54)`.
 fn share(share: Share) -> String {
     share.share.map_or_else(|| "–".to_owned(), |mean| within(mean, share.low, share.high))
 }
 
-/// The same with its p.
-fn changed(change: Option<Change>) -> String {
-    let description = change.map_or_else(|| "–".to_owned(), |c| within(c.mean, c.low, c.high));
-    format!("{description} | {}", chance(change.and_then(|change| change.p)))
+/// A difference with its interval, and its p.
+fn change_and_p(change: Option<Change>) -> [String; 2] {
+    let text = change.map_or_else(|| "–".to_owned(), |c| within(c.mean, c.low, c.high));
+    [text, p_text(change.and_then(|change| change.p))]
 }
 
 fn within(mean: f64, low: Option<f64>, high: Option<f64>) -> String {
@@ -358,7 +351,7 @@ fn within(mean: f64, low: Option<f64>, high: Option<f64>) -> String {
     }
 }
 
-fn chance(p: Option<f64>) -> String {
+fn p_text(p: Option<f64>) -> String {
     match p {
         None => "–".to_owned(),
         Some(p) if p < 0.001 => "< 0.001".to_owned(),

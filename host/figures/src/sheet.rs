@@ -5,7 +5,7 @@ use crate::{Anchor, Font, Svg, Theme, half_extent};
 use super::case::{CasePicture, small};
 
 /// The cases as small figures on one page, in the order given; a change of region starts a row. Scopes and
-/// symbols are as in [`case_picture`](super::case_picture), without letters, intents and captions.
+/// symbols are as in [`case_picture`](crate::case_picture), without letters, intents and captions.
 pub fn sheet(title: &str, pictures: &[CasePicture<'_>]) -> String {
     let mut page = Svg::default();
     let colors = pictures.first().map_or(Theme::default(), |picture| picture.theme).colors();
@@ -32,7 +32,7 @@ pub fn sheet(title: &str, pictures: &[CasePicture<'_>]) -> String {
         let left = step[0] * f64::from(column);
         let font = Font { size: text, fill: colors.ink, bold: false, halo: None };
         page.text([left, down - text * 1.4], name, Anchor::Start, font);
-        page.inset(&small(picture, ZOOM), [left + x, down - text * 1.8 - y]);
+        page.inset(&small(picture, SYMBOL_ZOOM), [left + x, down - text * 1.8 - y]);
         column += 1;
     }
     down -= step[1];
@@ -41,16 +41,16 @@ pub fn sheet(title: &str, pictures: &[CasePicture<'_>]) -> String {
     page.text([0.0, down - text], LEGEND, Anchor::Start, font);
     let edge = gap;
     let lower = [-edge, down - text - edge];
-    page.finish(lower, [right + edge, text * 1.6 + edge], PANEL_PX / (2.0 * x), colors.paper, title)
+    page.finish(lower, [right + edge, text * 1.6 + edge], CASE_WIDTH_PX / (2.0 * x), colors.paper, title)
 }
 
 /// Figures in a row.
 const COLUMNS: u32 = 8;
 /// Enlargement of symbols over those of a single figure: so that they are recognisable at a quarter of its
 /// size.
-const ZOOM: f64 = 1.7;
-/// Width of one on a screen, px.
-const PANEL_PX: f64 = 220.0;
+const SYMBOL_ZOOM: f64 = 1.7;
+/// Width of a case's figure on a screen, px.
+const CASE_WIDTH_PX: f64 = 220.0;
 const LEGEND: &str = "Orange: the ball, and where it may lie. Blue: robots. Grey: opponents in their scopes. \
      Green: the path of the ball, leg by leg. Dashed arrows: ways of robots.";
 

@@ -1,4 +1,4 @@
-//! `heat`: heat map of the field as SVG. A grid of values over the field with its legend and caption.
+//! `heat`: heat maps: a grid of values over the field with its legend and caption.
 
 use crate::{Anchor, At, Colors, Font, Svg, Theme, draw_field, field_lines, half_extent, width, wrapped};
 use casebase::{FieldMm, PointMm};
@@ -64,7 +64,7 @@ pub fn heat_maps(maps: &[HeatMap<'_>]) -> String {
         page.inset(&panel, [across - lower[0], 0.0]);
         across += upper[0] - lower[0];
         (low, high) = (low.min(lower[1]), high.max(upper[1]));
-        px_per_mm = PANEL_PX / (upper[0] - lower[0]);
+        px_per_mm = PANEL_WIDTH_PX / (upper[0] - lower[0]);
     }
     let titles: Vec<_> = maps.iter().map(|map| map.title).collect();
     let paper = maps.first().map_or(Theme::default(), |map| map.theme).colors().paper;
@@ -81,15 +81,13 @@ fn panel(map: &HeatMap<'_>) -> (Svg, At, At) {
     cells(&mut svg, map, colors);
     let mut over = Svg::default();
     field_lines(&mut over, &map.field, colors, "#000000");
-    svg.group_with(&over, LINES_OPACITY);
+    svg.group(&over, format_args!(r#"opacity="{LINES_OPACITY}""#));
     let font = Font { size: unit * 2.6, fill: colors.ink, bold: true, halo: None };
     svg.text([-x, y + unit * 1.6], map.title, Anchor::Start, font);
-    let mut below = -y - unit * 1.6;
-    below = match map.scale {
-        Scale::Continuous { low, high, unit: label } => {
-            bar(&mut svg, colors, (low, high, label), [-x, below], x, unit)
-        }
-        Scale::Categorical { names } => list(&mut svg, colors, names, [-x, below], x, unit),
+    let legend = Legend { corner: [-x, -y - unit * 1.6], half_width: x, unit, colors };
+    let mut below = match map.scale {
+        Scale::Continuous { low, high, unit: label } => legend.bar(&mut svg, [low, high], label),
+        Scale::Categorical { names } => legend.list(&mut svg, names),
     };
     let font = Font { size: unit * 1.9, fill: colors.faint, bold: false, halo: None };
     below -= unit;
@@ -101,21 +99,44 @@ fn panel(map: &HeatMap<'_>) -> (Svg, At, At) {
 }
 
 fn cells(svg: &mut Svg, map: &HeatMap<'_>, colors: &Colors) {
-    let [low, high] = map.area.map(|PointMm { x, y }| [f64::from(x), f64::from(y)]);
-    let step = [(high[0] - low[0]) / map.columns.max(1) as f64, (high[1] - low[1]) / map.rows.max(1) as f64];
-    for row in 0..map.rows {
-        for column in 0..map.columns {
-            let value = map.values.get(row * map.columns + column).copied().flatten();
-            let fill = value.and_then(|value| color(value, map.scale)).unwrap_or(colors.unknown.to_owned());
-            let corner = [low[0] + step[0] * column as f64, low[1] + step[1] * row as f64];
+    let area = map.area.map(|PointMm { x, y }| [f64::from(x), f64::from(y)]);
+    squares(svg, area, [map.columns, map.rows], |column, row| {
+        let value = map.values.get(row * map.columns + column).copied().flatten();
+        value.and_then(|value| color(value, map.scale)).unwrap_or_else(|| colors.unknown.to_owned())
+    });
+}
+
+/// Fills the area between two corners with `columns` × `rows` squares of these colours; squares of one colour
+/// side by side are one rectangle. Columns are counted from the left, rows from below.
+pub fn squares(
+    svg: &mut Svg,
+    [low, high]: [At; 2],
+    [columns, rows]: [usize; 2],
+    color: impl Fn(usize, usize) -> String,
+) {
+    let step = [(high[0] - low[0]) / columns.max(1) as f64, (high[1] - low[1]) / rows.max(1) as f64];
+    let mut group = Svg::default();
+    for row in 0..rows {
+        let bottom = low[1] + step[1] * row as f64;
+        let colors: Vec<_> = (0..columns).map(|column| color(column, row)).collect();
+        let mut from = 0;
+        for run in colors.chunk_by(|left, right| left == right) {
+            let to = from + run.len();
+            let [left, right] = [from, to].map(|column| low[0] + step[0] * column as f64);
             // Neighbours share an edge: without its own stroke a viewer shows the background between them.
-            let style = format_args!(
-                r#"fill="{fill}" stroke="{fill}" stroke-width="4" shape-rendering="crispEdges""#
-            )
-            .to_string();
-            svg.rect(corner, [corner[0] + step[0], corner[1] + step[1]], style);
+            let style = format!(r#"fill="{0}" stroke="{0}""#, run[0]);
+            group.rect([left, bottom], [right, bottom + step[1]], style);
+            from = to;
         }
     }
+    svg.group(&group, r#"stroke-width="4" shape-rendering="crispEdges""#);
+}
+
+/// Draws the colours of the scale as a bar from its upper left corner.
+pub fn scale_bar(svg: &mut Svg, [x, y]: At, [width, height]: At) {
+    squares(svg, [[x, y - height], [x + width, y]], [SHADE_STEPS, 1], |step, _| {
+        shade((step as f64 + 0.5) / SHADE_STEPS as f64)
+    });
 }
 
 /// The colour of a value; `None` where it has none.
@@ -124,7 +145,7 @@ fn color(value: f64, scale: Scale<'_>) -> Option<String> {
         Scale::Continuous { low, high, .. } => {
             let span = high - low;
             let share = if span == 0.0 { 0.0 } else { (value - low) / span };
-            share.is_finite().then(|| shade(share.clamp(0.0, 1.0)))
+            share.is_finite().then(|| shade(share))
         }
         Scale::Categorical { names } => {
             let known = names.len().min(CATEGORIES_MAX);
@@ -135,67 +156,73 @@ fn color(value: f64, scale: Scale<'_>) -> Option<String> {
     }
 }
 
-/// A share of the scale as a colour.
-fn shade(share: f64) -> String {
-    let along = share * (SHADES.len() - 1) as f64;
+/// Colour of a share of the scale from 0 to 1, in [`SHADE_STEPS`] steps; beyond an end, that end's.
+pub fn shade(share: f64) -> String {
+    let steps = SHADE_STEPS as f64;
+    let along = (share.clamp(0.0, 1.0) * steps).round() / steps * (SHADES.len() - 1) as f64;
     let before = (along.floor() as usize).min(SHADES.len() - 2);
     let part = along - before as f64;
-    let mix = |channel: usize| {
+    let [red, green, blue] = [0, 1, 2].map(|channel| {
         let [from, to] = [SHADES[before][channel], SHADES[before + 1][channel]].map(f64::from);
         (from + (to - from) * part).round() as u8
-    };
-    format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
+    });
+    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// The scale as a bar with five numbers; returns its end.
-fn bar(
-    svg: &mut Svg,
-    colors: &Colors,
-    (low, high, label): (f64, f64, &str),
-    [x, y]: [f64; 2],
-    half: f64,
+/// Place and sizes of the legend below a map.
+struct Legend {
+    /// Upper left corner, mm.
+    corner: At,
+    /// Half of the field's width, mm.
+    half_width: f64,
+    /// A hundredth of the field's width, mm.
     unit: f64,
-) -> f64 {
-    let (width, height) = (half * 1.2, unit * 2.0);
-    for step in 0..STEPS {
-        let at = x + width * step as f64 / STEPS as f64;
-        let fill = shade((step as f64 + 0.5) / STEPS as f64);
-        let style = format!(r#"fill="{fill}" stroke="{fill}" stroke-width="4" shape-rendering="crispEdges""#);
-        svg.rect([at, y], [at + width / STEPS as f64, y - height], style);
-    }
-    let font = Font { size: unit * 1.7, fill: colors.ink, bold: false, halo: None };
-    for quarter in 0..=4 {
-        let share = f64::from(quarter) * 0.25;
-        let anchor = match quarter {
-            0 => Anchor::Start,
-            4 => Anchor::End,
-            _ => Anchor::Middle,
-        };
-        let number = number(low + (high - low) * share, high - low);
-        svg.text([x + width * share, y - height - unit * 2.0], &format!("{number}{label}"), anchor, font);
-    }
-    let known = x + width + unit * 6.0;
-    let style = format!(r#"fill="{}""#, colors.unknown);
-    svg.rect([known, y], [known + height, y - height], style);
-    svg.text([known + height + unit, y - height * 0.8], "not known", Anchor::Start, font);
-    y - height - unit * 2.2
+    colors: &'static Colors,
 }
 
-/// The categories, each behind its colour; returns their end.
-fn list(svg: &mut Svg, colors: &Colors, names: &[&str], [x, y]: [f64; 2], half: f64, unit: f64) -> f64 {
-    let font = Font { size: unit * 1.7, fill: colors.ink, bold: false, halo: None };
-    let (mut across, mut down) = (x, y);
-    let known = names.iter().zip(CATEGORIES).map(|(name, fill)| (*name, fill));
-    for (name, fill) in known.chain([("not known", colors.unknown)]) {
-        let wide = unit * 6.0 + width(name, font.size);
-        if across > x && across + wide > half {
-            (across, down) = (x, down - unit * 3.0);
+impl Legend {
+    /// Draws the scale as a bar with five numbers; returns its lower end.
+    fn bar(&self, svg: &mut Svg, [low, high]: [f64; 2], label: &str) -> f64 {
+        let ([x, y], unit) = (self.corner, self.unit);
+        let [width, height] = [self.half_width * 1.2, unit * 2.0];
+        scale_bar(svg, [x, y], [width, height]);
+        for quarter in 0..=4 {
+            let share = f64::from(quarter) * 0.25;
+            let anchor = match quarter {
+                0 => Anchor::Start,
+                4 => Anchor::End,
+                _ => Anchor::Middle,
+            };
+            let number = number(low + (high - low) * share, high - low);
+            let place = [x + width * share, y - height - unit * 2.0];
+            svg.text(place, &format!("{number}{label}"), anchor, self.font());
         }
-        svg.rect([across, down], [across + unit * 2.0, down - unit * 2.0], format!(r#"fill="{fill}""#));
-        svg.text([across + unit * 3.0, down - unit * 1.6], name, Anchor::Start, font);
-        across += wide;
+        let unknown = x + width + unit * 6.0;
+        let style = format!(r#"fill="{}""#, self.colors.unknown);
+        svg.rect([unknown, y], [unknown + height, y - height], style);
+        svg.text([unknown + height + unit, y - height * 0.8], UNKNOWN, Anchor::Start, self.font());
+        y - height - unit * 2.2
     }
-    down - unit * 2.0
+
+    /// Draws the categories, each behind its colour; returns their lower end.
+    fn list(&self, svg: &mut Svg, names: &[&str]) -> f64 {
+        let ([mut across, mut down], unit) = (self.corner, self.unit);
+        let known = names.iter().zip(CATEGORIES).map(|(name, fill)| (*name, fill));
+        for (name, fill) in known.chain([(UNKNOWN, self.colors.unknown)]) {
+            let entry_width = unit * 6.0 + width(name, self.font().size);
+            if across > self.corner[0] && across + entry_width > self.half_width {
+                (across, down) = (self.corner[0], down - unit * 3.0);
+            }
+            svg.rect([across, down], [across + unit * 2.0, down - unit * 2.0], format!(r#"fill="{fill}""#));
+            svg.text([across + unit * 3.0, down - unit * 1.6], name, Anchor::Start, self.font());
+            across += entry_width;
+        }
+        down - unit * 2.0
+    }
+
+    fn font(&self) -> Font<'static> {
+        Font { size: self.unit * 1.7, fill: self.colors.ink, bold: false, halo: None }
+    }
 }
 
 /// The fewest decimals that distinguish the quarters of `span`.
@@ -218,13 +245,15 @@ const SHADES: [[u8; 3]; 5] =
 /// Okabe and Ito's, the pale ones first.
 const CATEGORIES: [&str; CATEGORIES_MAX] =
     ["#56b4e9", "#e69f00", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7", "#7a7a7a"];
+/// Entry of the legend for cells without a value.
+const UNKNOWN: &str = "not known";
 /// Opacity of the black lines over the cells: the scale's darkest colours must not hide them, nor they a
 /// cell.
 const LINES_OPACITY: &str = "0.6";
 /// Width of a map on a screen, px.
-const PANEL_PX: f64 = 900.0;
-/// Stripes of the legend's bar.
-const STEPS: usize = 64;
+const PANEL_WIDTH_PX: f64 = 900.0;
+/// Number of steps between the ends of the scale.
+const SHADE_STEPS: usize = 64;
 
 #[cfg(test)]
 mod tests {
@@ -273,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_beyond_the_scale_has_its_ends_colour_and_no_number_has_none() {
+    fn values_beyond_the_scale_have_the_colour_of_its_end() {
         let scale = Scale::Continuous { low: 10.0, high: 20.0, unit: "" };
         assert_eq!(color(-5.0, scale).as_deref(), Some("#440154"));
         assert_eq!(color(90.0, scale).as_deref(), Some("#fde725"));
@@ -284,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn a_category_without_a_name_is_unknown() {
+    fn a_category_without_a_name_has_no_colour() {
         let scale = Scale::Categorical { names: &["none", "one"] };
         assert_eq!(color(1.0, scale).as_deref(), Some("#e69f00"));
         assert_eq!(color(2.0, scale), None);
@@ -294,6 +323,7 @@ mod tests {
     #[test]
     fn missing_values_are_drawn_as_unknown() {
         let svg = heat_map(&map(&[], Scale::Categorical { names: &["none"] }));
-        assert_eq!(svg.matches(r##"fill="#d0d0d0" stroke"##).count(), 4);
+        // A rectangle for each of the two rows, as its two cells have one colour.
+        assert_eq!(svg.matches(r##"width="5400.0" height="1800.0" fill="#d0d0d0" stroke"##).count(), 2);
     }
 }

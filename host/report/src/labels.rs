@@ -1,4 +1,4 @@
-//! `description`: labels and colours of the report. One label and one colour an approach, wherever it
+//! `labels`: labels and colours of the report. One label and one colour an approach, wherever it
 //! appears.
 
 use arena::approach_label;
@@ -22,12 +22,12 @@ pub(crate) fn color(approach: Approach) -> &'static str {
     }
 }
 
-/// The same colour for the page, which has its own dark variant of it.
+/// Style of an approach's rows: its colour, which the page's style defines for light and dark.
 pub(crate) fn css(approach: Approach) -> String {
     format!("--approach:var(--{})", approach_label(approach))
 }
 
-/// Of two approaches the one a difference starts with: an approach beyond the paper is compared with the
+/// Two approaches in the order of their difference: an approach beyond the paper is compared with the
 /// paper's, not the reverse.
 pub(crate) fn oriented((first, second): (Approach, Approach)) -> (Approach, Approach) {
     if approach_label(second) == "hybrid" { (second, first) } else { (first, second) }
@@ -39,7 +39,7 @@ pub(crate) fn scenario(scenario: Scenario) -> String {
     if label == title { "random starts".to_owned() } else { format!("{label} · {}", short(title)) }
 }
 
-/// What distinguishes a scenario from its neighbours.
+/// The end of a scenario's title, which distinguishes it from its neighbours.
 fn short(title: &str) -> &str {
     title.rsplit(", ").next().unwrap_or(title)
 }
@@ -64,7 +64,7 @@ pub(crate) const fn table(table: u8) -> &'static str {
     }
 }
 
-/// How it was measured, and its limitations.
+/// Method of measurement of a table, and its limitations.
 pub(crate) const fn note(table: u8) -> &'static str {
     match table {
         1 => {

@@ -121,22 +121,16 @@ impl Svg {
         ));
     }
 
-    /// `inner` with its origin at `at`.
+    /// Appends `inner` with its origin at `at`.
     pub fn inset(&mut self, inner: &Self, [x, y]: At) {
         let (body, y) = (&inner.body, -y);
         self.element(format_args!("<g transform=\"translate({x:.1} {y:.1})\">\n{body}</g>"));
     }
 
-    /// `inner`, drawn with these attributes.
+    /// Appends `inner`, drawn with these attributes.
     pub fn group(&mut self, inner: &Self, style: impl Display) {
         let body = &inner.body;
         self.element(format_args!("<g {style}>\n{body}</g>"));
-    }
-
-    /// `inner` over existing elements, with that opacity.
-    pub fn group_with(&mut self, inner: &Self, opacity: &str) {
-        let body = &inner.body;
-        self.element(format_args!("<g opacity=\"{opacity}\">\n{body}</g>"));
     }
 
     /// The whole figure: the rectangle between the two corners, with `px_per_unit` as its scale on a screen.
@@ -151,24 +145,14 @@ impl Svg {
         let (width, height, y) = (right - left, top - bottom, -top);
         let (w, h) = (width * px_per_unit, height * px_per_unit);
         let (title, body) = (escaped(title), self.body);
+        let size = format!(r#"width="{w:.0}" height="{h:.0}""#);
+        let view = format!(r#"viewBox="{left:.0} {y:.0} {width:.0} {height:.0}""#);
+        let background = format!(
+            r#"<rect x="{left:.0}" y="{y:.0}" width="{width:.0}" height="{height:.0}" fill="{paper}"/>"#
+        );
         format!(
-            concat!(
-                r#"<svg xmlns="http://www.w3.org/2000/svg" width="{w:.0}" height="{h:.0}" "#,
-                r#"viewBox="{left:.0} {y:.0} {width:.0} {height:.0}" font-family="{fonts}">"#,
-                "\n<title>{title}</title>\n",
-                r#"<rect x="{left:.0}" y="{y:.0}" width="{width:.0}" height="{height:.0}" fill="{paper}"/>"#,
-                "\n{body}</svg>\n"
-            ),
-            w = w,
-            h = h,
-            left = left,
-            y = y,
-            width = width,
-            height = height,
-            fonts = FONTS,
-            title = title,
-            paper = paper,
-            body = body
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" {size} {view} font-family=\"{FONT_FAMILIES}\">\n\
+             <title>{title}</title>\n{background}\n{body}</svg>\n"
         )
     }
 
@@ -214,14 +198,14 @@ pub fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
-const FONTS: &str = "DejaVu Sans, Helvetica, Arial, sans-serif";
+const FONT_FAMILIES: &str = "DejaVu Sans, Helvetica, Arial, sans-serif";
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn up_on_the_field_is_up_on_the_snapshot() {
+    fn up_on_the_field_is_up_on_the_figure() {
         let mut svg = Svg::default();
         svg.circle([100.0, 250.0], 30.0, "");
         assert!(svg.body.contains(r#"cx="100.0" cy="-250.0" rx="30.0""#), "{}", svg.body);
@@ -240,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn words_from_outside_cannot_break_the_snapshot() {
+    fn text_from_outside_cannot_break_the_figure() {
         let mut svg = Svg::default();
         let font = Font { size: 10.0, fill: "black", bold: false, halo: None };
         svg.text([0.0, 0.0], "a<b & c>d\u{7}", Anchor::Start, font);

@@ -10,8 +10,8 @@ use casebase::{
 
 use crate::{Anchor, At, Colors, Font, Svg, Theme, draw_field, half_extent, wrapped};
 
-use super::description;
 use super::labels::Labels;
+use super::verdict::caption_of;
 
 /// A case to be drawn.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ pub struct CasePicture<'a> {
     pub case: Case<'a>,
     /// The case's name, `region/name`, for the title.
     pub name: &'a str,
-    /// Its purpose, in its author's text.
+    /// The case's purpose, in its author's text.
     pub intent: &'a str,
     /// The problem to draw over it, if any.
     pub overlay: Option<Overlay<'a>>,
@@ -131,37 +131,43 @@ impl Scene<'_, '_> {
     /// The letters of the intervals: on the first ray where none overlaps a symbol or another letter, else
     /// each where it can; a letter without room is left out.
     fn ring_names(&self, pen: &mut Pen, labels: &mut Labels) {
-        let case = &self.picture.case;
-        let (center, scope) = (at(case.ball()), case.ball_scope());
         let size = pen.unit * 1.3;
         let half = size * 0.42;
-        let border = f64::from(self.settings.limit()).sqrt();
-        let rings = INTERVALS.map(|(similarity, _)| f64::sqrt(-f64::ln(similarity)));
-        let letters = INTERVALS.map(|(_, letter)| letter).into_iter().chain(["L"]);
-        // Middles of the bands; the outermost is thinner than a letter, its name is placed outside.
-        let shares = [0.5 * rings[0], f64::midpoint(rings[0], rings[1]), f64::midpoint(rings[1], rings[2])];
-        let place = |degrees: i32, band: usize| -> At {
-            let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
-            let [x, y] = [f64::from(scope.x) * cos, f64::from(scope.y) * sin];
-            let share = shares.get(band).copied().unwrap_or(border + size * 0.7 / x.hypot(y));
-            [center[0] + x * share, center[1] + y * share]
-        };
-        let clear = |degrees: &i32| {
-            let places: Vec<_> = (0..4).map(|band| place(*degrees, band)).collect();
-            let apart = places
-                .windows(2)
-                .all(|pair| (0..2).any(|axis| (pair[0][axis] - pair[1][axis]).abs() >= 2.0 * half));
-            apart && places.iter().all(|place| labels.free([*place], half).is_some())
-        };
-        let ray = RAYS.iter().find(|degrees| clear(degrees)).copied();
+        let ray = LETTER_RAYS.iter().find(|degrees| self.is_clear(**degrees, size, half, labels)).copied();
         let font = Font { size, fill: pen.colors.ink, bold: false, halo: Some(pen.colors.surface) };
+        let letters = INTERVALS.map(|(_, letter)| letter).into_iter().chain(["L"]);
         for (band, letter) in letters.enumerate() {
-            let places = ray.iter().chain(&RAYS).map(|degrees| place(*degrees, band));
+            let places =
+                ray.iter().chain(&LETTER_RAYS).map(|degrees| self.letter_place(*degrees, band, size));
             if let Some([x, y]) = labels.free(places, half) {
                 labels.keep_free([x, y], half);
                 pen.svg.text([x, y - size * 0.36], letter, Anchor::Middle, font);
             }
         }
+    }
+
+    /// Place of a band's letter on a ray from the ball: in the middle of the band; the outermost is thinner
+    /// than a letter, whose place is outside.
+    fn letter_place(&self, degrees: i32, band: usize, size: f64) -> At {
+        let (center, scope) = (at(self.picture.case.ball()), self.picture.case.ball_scope());
+        let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+        let [x, y] = [f64::from(scope.x) * cos, f64::from(scope.y) * sin];
+        let rings = INTERVALS.map(|(similarity, _)| f64::sqrt(-f64::ln(similarity)));
+        let share = match band {
+            0 => 0.5 * rings[0],
+            1 | 2 => f64::midpoint(rings[band - 1], rings[band]),
+            _ => f64::from(self.settings.limit()).sqrt() + size * 0.7 / x.hypot(y),
+        };
+        [center[0] + x * share, center[1] + y * share]
+    }
+
+    /// True if all letters have room on a ray.
+    fn is_clear(&self, degrees: i32, size: f64, half: f64, labels: &Labels) -> bool {
+        let places = [0, 1, 2, 3].map(|band| self.letter_place(degrees, band, size));
+        let are_apart = places
+            .windows(2)
+            .all(|pair| (0..2).any(|axis| (pair[0][axis] - pair[1][axis]).abs() >= 2.0 * half));
+        are_apart && places.iter().all(|place| labels.free([*place], half).is_some())
     }
 
     /// Displacement of the opponents' scopes with the ball.
@@ -218,7 +224,10 @@ impl Scene<'_, '_> {
             let waits = |robot| distance(at(self.adapted(robot)), to) < pen.unit * 1.9;
             let short = if self.picture.case.robots().any(waits) { pen.unit * 2.0 } else { 0.0 };
             pen.arrow(from, along((1.0 - short / length).max(0.1)), color, "");
-            let middle = pen.labels.free(ALONG.map(along), pen.unit * 1.2).unwrap_or(along(ALONG[0]));
+            let middle = pen
+                .labels
+                .free(LEG_NUMBER_SHARES.map(along), pen.unit * 1.2)
+                .unwrap_or(along(LEG_NUMBER_SHARES[0]));
             let style = format!(r#"fill="{}" stroke="{color}" stroke-width="10""#, pen.colors.paper);
             pen.svg.circle(middle, pen.unit * 1.2, style);
             pen.labels.keep_free(middle, pen.unit * 1.2);
@@ -237,7 +246,7 @@ impl Scene<'_, '_> {
             for (index, action) in case.gameplay(robot).enumerate() {
                 let next = match action {
                     Action::GoToPoint(point) | Action::DribbleTo(point) => at(point.plus(shift)),
-                    Action::GetBall | Action::ReceiveBall(_) => self.met(robot, index),
+                    Action::GetBall | Action::ReceiveBall(_) => self.ball_reached_at(robot, index),
                     _ => continue,
                 };
                 let dash = match action {
@@ -252,7 +261,7 @@ impl Scene<'_, '_> {
 
     /// Position where a robot reaches the ball: at the end of the leg that brings it, or at the ball's start
     /// position.
-    fn met(&self, robot: CaseRobot, action: usize) -> At {
+    fn ball_reached_at(&self, robot: CaseRobot, action: usize) -> At {
         let case = &self.picture.case;
         let from = case.partner_of(robot, action);
         let leg = case.legs(self.ball).find(|leg| Some((leg.robot, leg.action)) == from);
@@ -272,8 +281,6 @@ impl Scene<'_, '_> {
     /// The robots and opponents of the problem, and the correspondence.
     fn situation(&self, pen: &mut Pen, overlay: &Overlay<'_>) {
         let Overlay { problem, verdict, .. } = overlay;
-        let place =
-            |id| problem.teammates.iter().find(|(other, _)| *other == id).map(|(_, place)| at(*place));
         let pairs: Vec<_> = match verdict {
             CaseVerdict::Candidate(found) => {
                 self.picture.case.robots().zip(found.correspondence.iter().copied()).collect()
@@ -281,12 +288,13 @@ impl Scene<'_, '_> {
             CaseVerdict::TooFar { robot, player, .. } => vec![(*robot, *player)],
             _ => Vec::new(),
         };
-        let far = matches!(verdict, CaseVerdict::TooFar { .. });
-        let color = if far { pen.colors.warning } else { pen.colors.team };
+        let is_far = matches!(verdict, CaseVerdict::TooFar { .. });
+        let color = if is_far { pen.colors.warning } else { pen.colors.team };
         for (robot, player) in pairs {
-            let (Some(from), to) = (place(player), at(self.adapted(robot))) else { continue };
-            let style = format!(r#"stroke="{color}" stroke-width="16""#);
-            pen.svg.line(from, to, style);
+            let teammate = problem.teammates.iter().find(|(other, _)| *other == player);
+            let (Some((_, from)), to) = (teammate, at(self.adapted(robot))) else { continue };
+            let from = at(*from);
+            pen.svg.line(from, to, format!(r#"stroke="{color}" stroke-width="16""#));
             let length = distance(from, to);
             let middle = [f64::midpoint(from[0], to[0]), f64::midpoint(from[1], to[1])];
             pen.labels.name(middle, pen.unit * 0.4, format!("{length:.0} mm"), color);
@@ -361,7 +369,7 @@ fn caption(pen: &mut Pen, picture: &CasePicture<'_>, [x, y]: [f64; 2]) -> String
     let side = format!("{} · id {} · attacks to the {towards}", case.symmetry().label(), case.id());
     let font = Font { size: unit * 1.7, fill: colors.faint, bold: false, halo: None };
     pen.svg.text([x, y + unit * 1.6], &side, Anchor::End, font);
-    let verdict = picture.overlay.map(|overlay| description::verdict(overlay.verdict, overlay.rank));
+    let verdict = picture.overlay.map(|overlay| caption_of(overlay.verdict, overlay.rank));
     let mut below = -y - unit * 0.6;
     for text in [Some(picture.intent.to_owned()), verdict, Some(LEGEND.to_owned())].into_iter().flatten() {
         for line in wrapped(&text, font.size, 2.0 * x) {
@@ -402,12 +410,12 @@ fn at(point: PointMm) -> At {
     [f64::from(point.x), f64::from(point.y)]
 }
 
-/// Where a similarity interval ends, and its letter (docs/case-format.md §3).
+/// Lower end of a similarity interval, and its letter (docs/case-format.md §3).
 const INTERVALS: [(f64, &str); 3] = [(0.8, "H"), (0.6, "h"), (0.4, "l")];
 /// Angles of the letters of the intervals around the ball, degrees, in order of preference.
-const RAYS: [i32; 16] = [-35, 35, -145, 145, 0, 180, -18, 18, -162, 162, -55, 55, -125, 125, -90, 90];
+const LETTER_RAYS: [i32; 16] = [-35, 35, -145, 145, 0, 180, -18, 18, -162, 162, -55, 55, -125, 125, -90, 90];
 /// Positions of the number of a leg on it, as shares of its length.
-const ALONG: [f64; 7] = [0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74];
+const LEG_NUMBER_SHARES: [f64; 7] = [0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74];
 const LEGEND: &str = "Circles: teammates, dashed where the case wants them. Squares: opponents, in their scopes. Orange: the ball and \
      its scope, rings at similarity 0.8 (H within), 0.6 (h), 0.4 (l) and its border (L). Trapezoids: legs of the ball, in order. Dashed arrows: \
      ways of robots, dotted with the ball.";

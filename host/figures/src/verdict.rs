@@ -1,9 +1,9 @@
-//! `description`: a verdict as one sentence for captions; mm.
+//! `verdict`: verdict of a retrieval as one sentence for captions; mm.
 
 use casebase::CaseVerdict;
 
 /// The verdict with its evidence.
-pub(super) fn verdict(verdict: &CaseVerdict, rank: Option<(usize, usize)>) -> String {
+pub(super) fn caption_of(verdict: &CaseVerdict, rank: Option<(usize, usize)>) -> String {
     match verdict {
         CaseVerdict::Candidate(found) => {
             let rank = rank.map_or_else(String::new, |(rank, of)| format!(", rank {rank} of {of}"));

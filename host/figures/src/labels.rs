@@ -55,18 +55,16 @@ impl Labels {
 
 /// Above, below, right, left, then farther out.
 fn places(label: &Label, size: f64) -> [[At; 2]; 12] {
-    let ([x, y], half, high) = (label.at, width(&label.text, size) * 0.5, size);
-    let sides = |reach: f64| {
-        let (up, out) = (reach + high * 0.6, reach + half + high * 0.2);
+    let ([x, y], half) = (label.at, width(&label.text, size) * 0.5);
+    let sides = [0.0, 1.1, 2.2].map(|farther| {
+        let reach = label.reach + size * farther;
+        let (up, out) = (reach + size * 0.6, reach + half + size * 0.2);
         [[x, y + up], [x, y - up], [x + out, y], [x - out, y]]
-    };
-    let [near, far, out] = [0.0, 1.1, 2.2].map(|away| sides(label.reach + high * away));
-    let rect = |[x, y]: At| [[x - half, y - high * 0.5], [x + half, y + high * 0.5]];
-    let mut places = [[0.0; 2]; 12];
-    for (place, at) in places.iter_mut().zip(near.into_iter().chain(far).chain(out)) {
-        *place = at;
-    }
-    places.map(rect)
+    });
+    std::array::from_fn(|i| {
+        let [x, y] = sides[i / 4][i % 4];
+        [[x - half, y - size * 0.5], [x + half, y + size * 0.5]]
+    })
 }
 
 fn overlap([low, high]: &[At; 2], [other_low, other_high]: &[At; 2]) -> bool {

@@ -1,20 +1,19 @@
-//! `numbers`: number formatting. As many digits as its trials support, a true minus sign, and p in the usual
-//! form.
+//! `numbers`: numbers as text. Fixed decimals with a true minus sign, and p in the usual form.
 
-/// With this number of decimals; a minus sign is U+2212, and zero has no sign.
-pub(crate) fn plain(value: f64, decimals: usize) -> String {
+/// `value` with this number of decimals; the minus sign is U+2212, and zero has none.
+pub fn plain(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.'));
     if zero { text.trim_start_matches('-').to_owned() } else { text.replace('-', "−") }
 }
 
-/// As the paper prints it: without decimals where it is whole.
-pub(crate) fn printed(value: f64, decimals: usize) -> String {
+/// `value` without decimals where it is whole, as papers print shares.
+pub fn printed(value: f64, decimals: usize) -> String {
     if (value - value.round()).abs() < 1e-9 { plain(value, 0) } else { plain(value, decimals) }
 }
 
-/// With its sign.
-pub(crate) fn signed(value: f64, decimals: usize) -> String {
+/// `value` with its sign.
+pub fn signed(value: f64, decimals: usize) -> String {
     let text = plain(value, decimals);
     let zero = text.chars().all(|c| matches!(c, '0' | '.'));
     match text.chars().next() {
@@ -24,27 +23,14 @@ pub(crate) fn signed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// `p < 0.001`, `p = 0.035`.
-pub(crate) fn p(p: f64) -> String {
+/// A probability: `p < 0.001`, `p = 0.035`, `p = 0.50`.
+pub fn p(p: f64) -> String {
     if p < 0.001 {
         "p < 0.001".to_owned()
     } else if p < 0.1 {
         format!("p = {p:.3}")
     } else {
         format!("p = {p:.2}")
-    }
-}
-
-/// Stars of a p: `*` below 0.05, `**` below 0.01, `***` below 0.001.
-pub(crate) const fn marks(p: f64) -> &'static str {
-    if p < 0.001 {
-        "***"
-    } else if p < 0.01 {
-        "**"
-    } else if p < 0.05 {
-        "*"
-    } else {
-        ""
     }
 }
 
@@ -62,6 +48,5 @@ mod tests {
     #[test]
     fn p_is_printed_as_exactly_as_it_matters() {
         assert_eq!([p(0.0004), p(0.0351), p(0.5)], ["p < 0.001", "p = 0.035", "p = 0.50"]);
-        assert_eq!([marks(0.0009), marks(0.009), marks(0.049), marks(0.05)], ["***", "**", "*", ""]);
     }
 }
