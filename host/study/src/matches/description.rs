@@ -187,7 +187,7 @@ fn attack(outcomes: &[Outcome]) -> String {
     attack_table(&rows)
 }
 
-/// One team's sums of [`AttackCounts::named`](crate::attack::AttackCounts::named) against another.
+/// One team's sums of [`AttackCounts::named`](arena::attack::AttackCounts::named) against another.
 #[derive(Clone, Copy, Debug)]
 pub struct AttackRow<'a> {
     /// The team whose counts these are.
