@@ -12,7 +12,7 @@ use case_tools::Finding;
 use casebase::SettingError;
 use foreign::printable;
 use hil_sim::SimulationError;
-use study::evaluation::EvaluationError;
+use study::store::EvaluationError;
 
 mod bring_up;
 mod description;

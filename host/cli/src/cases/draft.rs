@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use study::evaluation::EvaluationError;
 use study::learning::{Change, RecordedDraft, draft};
+use study::store::EvaluationError;
 
 use crate::Failure;
 use crate::args::LibraryArgs;

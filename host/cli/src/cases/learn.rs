@@ -7,10 +7,10 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Args;
-use study::evaluation::{EvaluationError, Shard};
 use study::learning::{
     JournalPlayer, Kind, LearnError, LearnSettings, Learned, Worlds, learn, learn_matches,
 };
+use study::store::{EvaluationError, Shard};
 
 use crate::Failure;
 use crate::args::{LibraryArgs, VERSION};

@@ -13,7 +13,8 @@ use brain::{Approach, Positioning};
 use casebase::RetrievalSettings;
 use clap::Args;
 use report::{Ablation, Facts, Map, Picture, Report};
-use study::evaluation::{Identity, Results, compare, in_words, merge, paper};
+use study::evaluation::{Identity, Results, compare, paper};
+use study::store::{StoredExperiment, in_words, merge};
 
 use super::{merge as shards, work};
 use crate::Failure;

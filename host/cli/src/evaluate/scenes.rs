@@ -8,9 +8,9 @@ use clap::Args;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::strategy::{ROUND_1, Team};
 use rules::League;
-use study::evaluation::{EvaluationError, csv_hash, to_csv};
 use study::matches::MatchTeam;
 use study::scenes::{SceneEffect, ScenePlan, scene_effects, scene_table};
+use study::store::{EvaluationError, Experiment, csv_hash, to_csv};
 
 use super::report::insert;
 use super::work::{self, write};
@@ -71,7 +71,7 @@ pub(super) fn run(args: &ScenesArgs) -> Result<ExitCode, Failure> {
     let (line, done, of) = (Progress::open(), AtomicU64::new(0), plan.len() as u64);
     line.set_text("playing");
     let on_played = || line.set(done.fetch_add(1, Ordering::Relaxed) + 1, of);
-    let rows = pool.install(|| plan.play(&on_played)).map_err(Failure::Game)?;
+    let rows = pool.install(|| plan.play_all(&on_played)).map_err(Failure::Game)?;
     drop(line);
     let csv = to_csv(&rows).map_err(EvaluationError::from)?;
     if let Some(file) = &args.csv {
