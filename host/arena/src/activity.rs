@@ -8,7 +8,7 @@ use hil_sim::four_legged::world::{LeggedWorld, Side};
 
 use crate::report::{ActivityReport, in_seconds};
 
-/// What the ball is in.
+/// State of the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Activity {
     Pause,

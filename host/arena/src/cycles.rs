@@ -23,10 +23,10 @@ pub struct CycleSeen {
     pub shot: ShotRule,
 }
 
-/// How a cycle ended.
+/// End of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CycleEnd {
-    /// Its robots reported it closed.
+    /// Closed, as its robots reported.
     Closed(Closure),
     /// A newer one started before it was closed.
     Superseded,
@@ -38,7 +38,7 @@ impl CycleEnd {
     /// The label of a play whose robots have done their parts.
     pub const FINISHED: &'static str = "finished";
     /// The labels of all ends that a play of a case can have.
-    pub const DESCRIPTION: [&'static str; 14] = [
+    pub const LABELS: [&'static str; 14] = [
         Self::FINISHED,
         "ball-out-of-scope",
         "path-blocked",
@@ -55,7 +55,7 @@ impl CycleEnd {
         "trial-over",
     ];
 
-    /// Its label in reports.
+    /// Label in reports.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Closed(Closure::Finished) => Self::FINISHED,
@@ -110,9 +110,9 @@ pub enum CycleEvent {
     Nothing,
     /// A cycle started, by its place in [`CycleLog::cycles`].
     Began(usize),
-    /// Its coordinator decided, by its place in [`CycleLog::cycles`].
+    /// The coordinator of a cycle decided: its place in [`CycleLog::cycles`].
     Decided(usize),
-    /// It ended, by its place in [`CycleLog::cycles`].
+    /// A cycle ended: its place in [`CycleLog::cycles`].
     Ended(usize),
 }
 
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_newer_cycle_ends_an_older_one_and_a_late_closure_still_says_why() {
+    fn a_newer_cycle_ends_an_older_one_until_its_late_closure() {
         let mut log = CycleLog::default();
         log.receive(0.0, &state(1, play()));
         log.receive(2.0, &state(2, Decision::Undecided));
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn the_list_of_words_has_every_end_of_a_play() {
+    fn the_list_of_labels_has_every_end_of_a_play() {
         use AbortReason as Why;
         let by = robot(1);
         let aborted = [
@@ -256,7 +256,7 @@ mod tests {
         let aborted = aborted.map(|reason| CycleEnd::Closed(Closure::Aborted { by, reason }));
         let all = [CycleEnd::Closed(Closure::Finished)].into_iter().chain(aborted);
         let all = all.chain([CycleEnd::Superseded, CycleEnd::TrialOver]);
-        assert_eq!(all.map(CycleEnd::label).collect::<Vec<_>>(), CycleEnd::DESCRIPTION);
+        assert_eq!(all.map(CycleEnd::label).collect::<Vec<_>>(), CycleEnd::LABELS);
     }
 
     #[test]

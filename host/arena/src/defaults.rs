@@ -82,7 +82,7 @@ impl Causes {
     }
 }
 
-/// What a coordinator without noise sees: the ball at its stop position, the attackers by id, all other
+/// View of a coordinator without noise: the ball at its stop position, the attackers by id, all other
 /// robots.
 pub(crate) fn problem(world: &LeggedWorld, attackers: &[RobotId], deceleration: f32) -> Problem {
     let places = |side| {
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spell_lasts_from_the_first_word_to_the_next_case() {
+    fn a_spell_lasts_from_the_first_report_to_the_next_case() {
         let problem = Problem { ball: at(60_000, 0), ..problem_of_nobody() };
         let (base, settings) = (case_library::four_legged(), RetrievalSettings::default());
         let mut watch = DefaultWatch::default();

@@ -49,6 +49,7 @@ pub use profile::Profile;
 pub use recording::{RecordedKick, RecordedSample, Recording, Start};
 pub use report::{
     ActivityReport, Backups, CaseCounts, Causes, CycleReport, DefaultReport, Possession, TrialReport,
+    serialize_scenario,
 };
 pub use setup::{ROBOTS, Setup};
 pub use snapshot::{BallState, RobotState, Snapshot, SnapshotError};

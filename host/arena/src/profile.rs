@@ -12,7 +12,7 @@ hil_sim::labels! {
     pub enum Profile {
         /// The paper's simulator: noiseless perception (§5.2).
         Simulated = "simulated",
-        /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3;
+        /// The paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3;
         /// docs/papers.md R40).
         Robots = "robots",
     }

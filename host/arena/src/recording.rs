@@ -22,7 +22,7 @@ pub struct Recording {
     pub kicks: Vec<RecordedKick>,
     /// Every gameplay that started.
     pub starts: Vec<Start>,
-    /// How it ended, once it has.
+    /// Report, once the trial is over.
     pub report: Option<TrialReport>,
 }
 
@@ -67,7 +67,7 @@ pub struct Start {
     pub symmetry: &'static str,
     /// The players, in the order of case robots.
     pub players: Vec<String>,
-    /// Its place in the team's list of cycles.
+    /// Place in the team's list of cycles.
     pub cycle: usize,
 }
 

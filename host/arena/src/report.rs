@@ -13,7 +13,7 @@ use crate::names::{CaseNames, letter, symmetry};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialReport {
     /// 1 to 4, or `random`.
-    #[serde(serialize_with = "scenario")]
+    #[serde(serialize_with = "serialize_scenario")]
     pub scenario: Scenario,
     /// Configuration of the opponents: `dg` or `2d`.
     pub opponents: Configuration,
@@ -23,7 +23,7 @@ pub struct TrialReport {
     pub backend: &'static str,
     /// Random seed of the trial.
     pub seed: u64,
-    /// How it ended. Against two defenders `goal` is a ball in the penalty area (paper §5.2.2: "to goal").
+    /// End of the trial. Against two defenders `goal` is a ball in the penalty area (paper §5.2.2: "to goal").
     pub outcome: TrialOutcome,
     /// Seconds from kick-off to its end.
     pub time_s: f64,
@@ -42,13 +42,13 @@ pub struct TrialReport {
     pub trace_hash: String,
     /// The named settings of retrieval (docs/case-format.md §3.2).
     pub settings: BTreeMap<&'static str, String>,
-    /// When a case's actions start: `dependent` or `independent`.
+    /// Start of a case's actions: `dependent` or `independent`.
     pub positioning: &'static str,
     /// Hash of the case base, 8 hexadecimal digits.
     pub case_base: String,
-    /// How long the attackers played without a case, and why; null for approaches without cases.
+    /// Time that the attackers played without a case, and why; null for approaches without cases.
     pub default: Option<DefaultReport>,
-    /// What its time was spent on, s.
+    /// Time by what it was spent on, s.
     pub activity: ActivityReport,
 }
 
@@ -143,7 +143,7 @@ impl CycleReport {
 /// A trial's default behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DefaultReport {
-    /// Its duration, s.
+    /// Duration, s.
     pub time_s: f64,
     /// Number of spells.
     pub spells: u32,
@@ -162,15 +162,15 @@ pub struct ActivityReport {
     pub held: f64,
     /// An opponent holds it, without an attacker within reach.
     pub theirs: f64,
-    /// It rolls.
+    /// The ball rolls.
     pub rolls: f64,
-    /// It rests within an attacker's reach: last steps, turns about it, grabs.
+    /// The ball rests within an attacker's reach: last steps, turns about it, grabs.
     pub at_ball: f64,
-    /// It rests out of the attackers' reach: they walk to it.
+    /// The ball rests out of the attackers' reach: they walk to it.
     pub walk: f64,
 }
 
-/// How often no case fitted, by the farthest that any case came.
+/// Number of times that no case fitted, by the farthest that any case came.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Causes {
     /// The ball lay in no case's scope: a hole in the case base.
@@ -190,8 +190,9 @@ pub(crate) fn in_seconds(time: f32) -> f64 {
     f64::from(geometry::math::round_to_i32(time * 1000.0)) / 1000.0
 }
 
+/// Serialises a scenario: 1 to 4 as a number, others by label.
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
-pub fn scenario<S: Serializer>(scenario: &Scenario, s: S) -> Result<S::Ok, S::Error> {
+pub fn serialize_scenario<S: Serializer>(scenario: &Scenario, s: S) -> Result<S::Ok, S::Error> {
     match scenario.label().parse::<u8>() {
         Ok(number) => s.serialize_u8(number),
         Err(_) => s.serialize_str(scenario.label()),
@@ -215,5 +216,5 @@ mod tests {
 
     /// A scenario as a report writes it.
     #[derive(Serialize)]
-    struct Label(#[serde(serialize_with = "scenario")] Scenario);
+    struct Label(#[serde(serialize_with = "serialize_scenario")] Scenario);
 }

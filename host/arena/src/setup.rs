@@ -12,7 +12,7 @@ use crate::trial::TrialConfig;
 pub struct Setup {
     /// Settings of case retrieval (docs/case-format.md §3.2).
     pub settings: RetrievalSettings,
-    /// When a case's actions start.
+    /// Start of a case's actions.
     pub positioning: Positioning,
     /// Number of the two robots that may retrieve (paper §4.1).
     pub retrievers: usize,

@@ -52,9 +52,9 @@ pub struct BallState {
 pub struct RobotState {
     /// Whether it is blue; else yellow.
     pub blue: bool,
-    /// Its number, 0 to 15.
+    /// Number, 0 to 15.
     pub id: u8,
-    /// Its centre, m.
+    /// Centre, m.
     pub at: [f32; 2],
     /// Heading, rad.
     pub heading: f32,
@@ -66,28 +66,19 @@ pub struct RobotState {
     pub turning: f32,
 }
 
-/// Why a snapshot is refused.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Refusal of a snapshot.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SnapshotError {
-    /// It cannot be read.
+    /// Not readable.
+    #[error("no snapshot: {0}")]
     Malformed(String),
-    /// It is of another league.
+    /// A snapshot of another league.
+    #[error("the snapshot is of {}", foreign::excerpt(.0, 20))]
     League(String),
     /// A number is too large, or none.
+    #[error("the snapshot's {0} is out of range")]
     Range(&'static str),
 }
-
-impl std::fmt::Display for SnapshotError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Malformed(description) => write!(f, "no snapshot: {description}"),
-            Self::League(name) => write!(f, "the snapshot is of {}", foreign::excerpt(name, 20)),
-            Self::Range(what) => write!(f, "the snapshot's {what} is out of range"),
-        }
-    }
-}
-
-impl std::error::Error for SnapshotError {}
 
 impl Snapshot {
     /// The moment of that world.

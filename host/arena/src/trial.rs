@@ -39,7 +39,7 @@ pub struct TrialConfig<'a> {
     pub seed: u64,
     /// Settings of case retrieval (docs/case-format.md §3.2).
     pub settings: RetrievalSettings,
-    /// When a case's actions start.
+    /// Start of a case's actions.
     pub positioning: Positioning,
     /// Attackers, 1 to 4; the paper has 2.
     pub robots: usize,
@@ -65,7 +65,7 @@ pub struct TrialConfig<'a> {
 }
 
 impl TrialConfig<'static> {
-    /// As in the paper's simulated experiments, with the built-in library of the four-legged league.
+    /// Trial as in the paper's simulated experiments, with the built-in library of the four-legged league.
     pub fn new(scenario: Scenario, opponents: Configuration, approach: Approach, seed: u64) -> Self {
         let league = case_library::league(LEAGUE);
         Self {
@@ -131,7 +131,7 @@ pub trait Watcher {
     fn end(&mut self, _moment: &Moment<'_>, _report: &TrialReport) {}
 }
 
-/// What a watcher gets each tick.
+/// View of a watcher at each tick.
 pub struct Moment<'a> {
     /// Configuration of the trial being watched.
     pub config: &'a TrialConfig<'a>,
@@ -252,7 +252,7 @@ impl<'c, 'a> Game<'c, 'a> {
         Ok(())
     }
 
-    /// Where the attackers pause after a gameplay, the opponents may stop with them.
+    /// Stops the opponents, if they do so, where the attackers pause after a gameplay.
     fn pause(&mut self) {
         let pause = self.config.pause_after_cycle;
         if pause == Duration(0) {

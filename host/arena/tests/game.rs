@@ -47,7 +47,7 @@ impl Watcher for Conduct {
 }
 
 #[test]
-fn no_one_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_allow() {
+fn robots_are_slow_in_stop_still_in_halt_and_no_ball_is_too_fast() {
     let mut conduct = Conduct::default();
     let report = short(5, 120.0, &mut conduct);
     assert!(conduct.fastest_in_stop < 1.5, "{} m/s in STOP", conduct.fastest_in_stop);
@@ -61,7 +61,7 @@ fn no_one_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_
 }
 
 #[test]
-fn the_ball_is_in_play_for_most_of_every_match_both_teams_have_chances_and_fouls_are_few() {
+fn the_ball_is_mostly_in_play_both_teams_have_chances_and_fouls_are_few() {
     let matches: Vec<GameReport> = (1..=8).map(|seed| short(seed, 120.0, &mut NoWatcher)).collect();
     // Over 60 seeds the mean is 0.56 with a standard deviation of 0.10 (example `conduct`); a sixth is the
     // start of the two halves.

@@ -229,7 +229,7 @@ fn look(
 }
 
 #[test]
-fn with_gaps_of_40_to_150_ms_at_random_for_60_s_robots_stand_for_at_most_a_twentieth_of_the_time_in_play() {
+fn random_radio_gaps_of_40_to_150_ms_stop_robots_for_at_most_5_percent_of_play() {
     for fails in [Fails::Vision, Fails::Radio, Fails::Both, Fails::EachLink, Fails::Late] {
         let all = three_matches(fails);
         // Where each link fails by itself, gaps of the order and of its confirmation follow each other.
@@ -286,8 +286,7 @@ fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec
 }
 
 #[test]
-fn in_a_real_silence_of_the_radio_every_robot_brakes_before_what_it_received_is_200_ms_old_and_goes_on_after_it()
- {
+fn robots_brake_within_200_ms_of_radio_silence_and_go_on_after_it() {
     for seed in [1, 2, 3] {
         // After a gap the first frame counts; after half a second of silence, half a second of receiving, and
         // a telemetry packet (10 Hz) by which the host knows the robot again.
@@ -308,8 +307,7 @@ fn in_a_real_silence_of_the_radio_every_robot_brakes_before_what_it_received_is_
 }
 
 #[test]
-fn without_vision_the_host_carries_its_snapshot_on_for_half_a_second_and_every_robot_brakes_within_200_ms_after()
- {
+fn without_vision_the_host_extrapolates_for_500_ms_then_robots_brake_in_200_ms() {
     for seed in [1, 2, 3] {
         let seen = silence(seed, 170, |game, tick| game.blind(tick < 100));
         assert_eq!(seen[40].1, 0, "seed {seed}");

@@ -83,7 +83,7 @@ fn by_label<'a>(labels: impl Iterator<Item = &'a str>) -> BTreeMap<String, u32> 
 }
 
 #[test]
-fn a_ledger_counts_the_cycles_of_the_beacons_and_what_the_referee_and_the_physics_allow() {
+fn the_ledger_agrees_with_beacons_referee_and_physics() {
     let names = CaseNames::new(case_library::league("division-b").unwrap().names.iter().copied());
     for seed in [5, 11] {
         let (report, witness) = witnessed(seed);

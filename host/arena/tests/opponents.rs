@@ -15,7 +15,7 @@ fn goals(team: Team, seed: u64) -> [u32; 2] {
 }
 
 #[test]
-fn every_opponent_scores_more_than_three_times_in_each_match_against_a_side_that_stands() {
+fn every_opponent_scores_more_than_three_goals_against_a_side_that_stands() {
     let played: Vec<_> = Team::OPPONENTS
         .into_iter()
         .flat_map(|team| (1..=2).map(move |seed| (team.label(), seed, goals(team, seed))))

@@ -37,7 +37,7 @@ fn play(
 }
 
 #[test]
-fn a_healthy_match_of_either_division_says_nothing_ever() {
+fn a_healthy_match_of_either_division_raises_no_warning() {
     for (league, seconds, seeds) in [(League::DivisionB, 120, 1..=4), (League::DivisionA, 60, 1..=2)] {
         for seed in seeds {
             let config = GameConfig::new(league, seed, f64::from(seconds));
@@ -99,7 +99,7 @@ fn a_robot_more_than_the_league_allows_is_reported_by_both_hosts_within_two_seco
 }
 
 #[test]
-fn teams_that_stand_at_each_others_goals_at_the_start_are_reported_within_two_seconds() {
+fn teams_that_start_at_each_others_goals_are_reported_within_two_seconds() {
     for league in DIVISIONS {
         let config = GameConfig::new(league, 1, 12.0);
         let field = league.field();

@@ -13,7 +13,8 @@ use case_tools::Files;
 use hil_sim::Configuration;
 use rayon::prelude::*;
 use study::learning::{
-    Edit, KINDS, Situation, StartStream, Unit, Variant, Wager, Work, kind_of, order_edits,
+    Edit, KINDS, PlayError, Playable, Situation, StartStream, Unit, Variant, Wager, Work, kind_of,
+    order_edits,
 };
 
 /// Starts whose decisions are the situations.
@@ -105,11 +106,11 @@ fn compare(
             first: number as u32,
             trials: 1,
         };
-        let to_goal = |variant| -> Result<bool, hil_sim::SimulationError> {
+        let to_goal = |variant| -> Result<bool, PlayError> {
             let trials = Unit { variant, work: work.clone() }.play(seed)?;
             Ok(trials.iter().any(study::learning::LearningTrial::to_goal))
         };
-        Ok::<_, hil_sim::SimulationError>((to_goal(changed)?, to_goal(current)?))
+        Ok::<_, PlayError>((to_goal(changed)?, to_goal(current)?))
     };
     let pairs: Vec<(bool, bool)> = places.par_iter().enumerate().map(pair).collect::<Result<_, _>>()?;
     let mut wager = Wager::default();

@@ -13,6 +13,7 @@
 //!
 //! [`learning`] makes a case library better by play.
 //!
+//! Each is an [`Experiment`](store::Experiment): a plan, its jobs and their rows. [`store`] plays and keeps them;
 //! [`statistics`] has the tests and intervals that all of them use.
 #![forbid(unsafe_code)]
 
@@ -23,3 +24,4 @@ pub mod penalty;
 pub mod scenes;
 pub mod skills;
 pub mod statistics;
+pub mod store;

@@ -47,7 +47,7 @@ pub enum PenaltyOutcome {
     Goal,
     /// The ball did not cross it.
     Saved,
-    /// There was no shot: the referee did not start the penalty, or ended it before.
+    /// No shot: the referee did not start the penalty, or ended it before.
     NoShot,
 }
 
@@ -63,13 +63,13 @@ impl PenaltyShot {
             (state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 40) as f32 / 16_777_216.0
         };
         let _warm = (share(), share());
-        let inside = POST + share() * CORNER;
+        let inside = INSIDE_POST_MIN_M + share() * INSIDE_POST_SPREAD_M;
         let side = if share() < 0.5 { -1.0 } else { 1.0 };
         Self {
             after: 0.5 + 1.5 * f64::from(share()),
             aim: side * (0.5 * league.field().goal_width - inside),
-            speed: SLOWEST + share() * (FASTEST - SLOWEST),
-            run_up: RUN_UP[0] + (RUN_UP[1] - RUN_UP[0]) * f64::from(share()),
+            speed: SHOT_SPEED_MIN_M_S + share() * (SHOT_SPEED_MAX_M_S - SHOT_SPEED_MIN_M_S),
+            run_up: RUN_UP_S[0] + (RUN_UP_S[1] - RUN_UP_S[0]) * f64::from(share()),
         }
     }
 }
@@ -92,7 +92,7 @@ pub fn saves(
 /// Plays one penalty, with the shot that `seed` draws.
 pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<PenaltyOutcome, GameError> {
     let shot = PenaltyShot::of(league, seed);
-    let mut config = GameConfig::new(league, seed, MATCH).between(Team::Idle, Team::Ours);
+    let mut config = GameConfig::new(league, seed, MATCH_S).between(Team::Idle, Team::Ours);
     for team in &mut config.teams {
         team.robots = 2;
     }
@@ -111,7 +111,7 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<PenaltyOutcome
         |distance: f32, face: Angle| Pose { position: spot - Vector::polar(distance, face), heading: face };
     let straight = spot.direction_to(field.goal_center(own));
     let (mut asked, mut begun, mut left) = (false, None, None);
-    while game.time() < MATCH {
+    while game.time() < MATCH_S {
         let phase = game.referee().phase();
         if !asked && game.time() > 1.0 {
             asked = game.command(RefereeCommand::PreparePenalty(Colour::Blue));
@@ -130,7 +130,10 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<PenaltyOutcome
             let turn = (1.0 - until / shot.run_up).clamp(0.0, 1.0) as f32;
             let aimed = spot.direction_to(target);
             let face = straight + Angle::new((aimed - straight).radians() * turn);
-            game.put_robot(shooter, behind(STANDS_OFF - (STANDS_OFF - AT_BALL) * turn, face));
+            game.put_robot(
+                shooter,
+                behind(SHOOTER_WAITS_M - (SHOOTER_WAITS_M - SHOOTER_AT_BALL_M) * turn, face),
+            );
             if until <= 0.0 && running {
                 let velocity = (target - game.world().ball.position).unit().unwrap_or_default() * shot.speed;
                 game.kick_ball(velocity);
@@ -146,7 +149,7 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<PenaltyOutcome
                 return Ok(PenaltyOutcome::Goal);
             }
             let turned = ball.velocity.x() * (own.sign() as f32) <= 0.0;
-            if turned || game.time() - left > FLIGHT {
+            if turned || game.time() - left > FLIGHT_MAX_S {
                 return Ok(PenaltyOutcome::Saved);
             }
         }
@@ -156,21 +159,21 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<PenaltyOutcome
 }
 
 /// Longest penalty, simulated s.
-const MATCH: f64 = 40.0;
+const MATCH_S: f64 = 40.0;
 /// Longest flight of a ball, s: 8 m at 4 m/s take 2.6 s.
-const FLIGHT: f64 = 4.0;
-/// Shots are aimed this far inside a post, m, and up to [`CORNER`] farther.
-const POST: f32 = 0.06;
-const CORNER: f32 = 0.2;
+const FLIGHT_MAX_S: f64 = 4.0;
+/// Shots are aimed this far inside a post, m, and up to [`INSIDE_POST_SPREAD_M`] farther.
+const INSIDE_POST_MIN_M: f32 = 0.06;
+const INSIDE_POST_SPREAD_M: f32 = 0.2;
 /// Least and greatest speed of shots, m/s.
-const SLOWEST: f32 = 4.0;
-const FASTEST: f32 = 6.3;
+const SHOT_SPEED_MIN_M_S: f32 = 4.0;
+const SHOT_SPEED_MAX_M_S: f32 = 6.3;
 /// Least and greatest time in which the shooter goes up to the ball and turns to its target, s.
-const RUN_UP: [f64; 2] = [0.1, 0.4];
+const RUN_UP_S: [f64; 2] = [0.1, 0.4];
 /// Distance at which the shooter waits, m from centre to centre.
-const STANDS_OFF: f32 = 0.35;
+const SHOOTER_WAITS_M: f32 = 0.35;
 /// Distance at which it touches the ball, m from centre to centre.
-const AT_BALL: f32 = ROBOT_RADIUS + BALL_RADIUS + 0.005;
+const SHOOTER_AT_BALL_M: f32 = ROBOT_RADIUS + BALL_RADIUS + 0.005;
 
 #[cfg(test)]
 mod tests {

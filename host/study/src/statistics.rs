@@ -17,7 +17,7 @@ pub struct Count {
 }
 
 impl Count {
-    /// As a share, 0 to 1; `None` of no trials.
+    /// Share of hits, 0 to 1; `None` of no trials.
     pub fn share(self) -> Option<f64> {
         (self.of > 0).then(|| f64::from(self.hits) / f64::from(self.of))
     }
@@ -26,9 +26,9 @@ impl Count {
 /// Ends of an interval: a share from 0 to 1, a mean or a difference in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// Its lower end, in the value's unit.
+    /// Lower end, in the value's unit.
     pub low: f64,
-    /// Its upper end, in the value's unit.
+    /// Upper end, in the value's unit.
     pub high: f64,
 }
 
@@ -166,6 +166,67 @@ impl Sample {
         let mean = values.clone().sum::<f64>() / f64::from(n);
         let squares: f64 = values.map(|value| (value - mean) * (value - mean)).sum();
         Some(Self { n, mean, sd: (n > 1).then(|| (squares / f64::from(n - 1)).sqrt()) })
+    }
+}
+
+/// Whether something happened in the same trials with a change and without it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PairedShares {
+    /// Trials with the change in which it happened.
+    pub with: Count,
+    /// Trials without the change in which it happened.
+    pub without: Count,
+    /// Pairs in which it happened with the change alone.
+    pub only_with: u32,
+    /// Pairs in which it happened without the change alone.
+    pub only_without: u32,
+}
+
+impl PairedShares {
+    /// Counts of these pairs: with the change, without it.
+    pub fn of(pairs: impl Iterator<Item = (bool, bool)>) -> Self {
+        let (mut of, mut hits, mut only) = (0, [0, 0], [0, 0]);
+        for (with, without) in pairs {
+            of += 1;
+            hits[0] += u32::from(with);
+            hits[1] += u32::from(without);
+            only[0] += u32::from(with && !without);
+            only[1] += u32::from(without && !with);
+        }
+        let [with, without] = hits.map(|hits| Count { hits, of });
+        Self { with, without, only_with: only[0], only_without: only[1] }
+    }
+
+    /// McNemar's exact test.
+    pub fn test(&self) -> Option<Test> {
+        mcnemar(self.only_with, self.only_without)
+    }
+}
+
+/// A measure of the same trials with a change and without it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairedMeans {
+    /// Trials with the change.
+    pub with: Sample,
+    /// Trials without the change.
+    pub without: Sample,
+    /// Differences of the pairs: with the change less without it.
+    pub differences: Sample,
+}
+
+impl PairedMeans {
+    /// Samples of these pairs: with the change, without it; `None` without pairs.
+    pub fn of(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<Self> {
+        Some(Self {
+            with: Sample::of(pairs.clone().map(|(with, _)| with))?,
+            without: Sample::of(pairs.clone().map(|(_, without)| without))?,
+            differences: Sample::of(pairs.map(|(with, without)| with - without))?,
+        })
+    }
+
+    /// Student's paired t.
+    pub fn test(&self) -> Option<Test> {
+        paired(self.differences)
     }
 }
 

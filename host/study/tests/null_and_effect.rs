@@ -14,8 +14,8 @@ use study::learning::{
 /// Outcomes by a rule: the chance of a goal for a library and the case that is played.
 struct Rule<F>(F);
 
-impl<F: Fn(&Variant, &str) -> f32> Player for Rule<F> {
-    fn play(&mut self, units: &[Unit<'_>]) -> Result<Vec<Vec<LearningTrial>>, PlayError> {
+impl<'u, F: Fn(&Variant, &str) -> f32> Player<Unit<'u>> for Rule<F> {
+    fn play(&mut self, units: &[Unit<'u>]) -> Result<Vec<Vec<LearningTrial>>, PlayError> {
         let one = |unit: &Unit<'_>| {
             let numbers: Vec<u32> = match &unit.work {
                 Work::Starts { indices, .. } => indices.clone(),
@@ -136,7 +136,7 @@ fn a_harmful_case_is_forgotten_and_nothing_else_is() {
 fn a_confirmed_change_that_lowers_the_validation_starts_is_refused() {
     // The rule turns over on validation starts: what helps elsewhere harms there.
     struct Turned;
-    impl Player for Turned {
+    impl<'u> Player<Unit<'u>> for Turned {
         fn play(&mut self, units: &[Unit<'_>]) -> Result<Vec<Vec<LearningTrial>>, PlayError> {
             let one = |unit: &Unit<'_>| {
                 let turned = matches!(

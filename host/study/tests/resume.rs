@@ -8,8 +8,8 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use case_tools::Files;
-use study::evaluation::Shard;
 use study::learning::{Collected, JournalPlayer, Kind, LearnSettings, PlayError, Worlds, json, learn};
+use study::store::Shard;
 
 static STOPPED: AtomicBool = AtomicBool::new(false);
 

@@ -4,38 +4,25 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-/// How a possession ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PossessionEnd {
-    /// With a goal.
-    Goal,
-    /// With a shot that scored no goal.
-    Shot,
-    /// With a kick to an opponent.
-    KickToOpponent,
-    /// The opponents took the ball from a robot at it, or in a scrum.
-    Tackle,
-    /// The opponents came to a ball that no robot of the team was at.
-    Left,
-    /// The ball went out.
-    Out,
-    /// The referee stopped play for another reason.
-    Referee,
-}
-
-impl PossessionEnd {
-    /// Its name for programs.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Goal => "goal",
-            Self::Shot => "shot",
-            Self::KickToOpponent => "kick-to-opponent",
-            Self::Tackle => "tackle",
-            Self::Left => "left",
-            Self::Out => "out",
-            Self::Referee => "referee",
-        }
+hil_sim::labels! {
+    /// End of a possession.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum PossessionEnd {
+        /// A goal.
+        Goal = "goal",
+        /// A shot that scored no goal.
+        Shot = "shot",
+        /// A kick to an opponent.
+        KickToOpponent = "kick-to-opponent",
+        /// The opponents took the ball from a robot at it, or in a scrum.
+        Tackle = "tackle",
+        /// The opponents came to a ball that no robot of the team was at.
+        Left = "left",
+        /// The ball went out.
+        Out = "out",
+        /// The referee stopped play for another reason.
+        Referee = "referee",
     }
 }
 
@@ -73,7 +60,7 @@ impl ShotCounts {
     }
 }
 
-/// What a team made of the ball in a match.
+/// Possessions, kicks, shots and left balls of a team in a match.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AttackCounts {
     /// Possessions by their end.

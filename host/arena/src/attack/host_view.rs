@@ -1,14 +1,15 @@
 //! `host_view`: the ball and the robots as a host sees them, for recordings and real fields: kicks as its
-//! tracking fits them; a robot touches the ball that comes to within [`AT_BALL`] of its centre.
+//! tracking fits them; a robot touches the ball that comes to within [`TOUCHES_WITHIN`] of its centre.
 
 use geometry::{Field, Point};
 use host::Host;
 use host::world::{Kick, World};
 use protocol::Who;
+use rules::FieldSpec;
+use rules::contact::TOUCHES_WITHIN;
 use rules::limits::ROBOT_HEIGHT;
-use rules::{Colour, FieldSpec};
 
-use super::{AT_BALL, BallContact, BallLook, COLOURS};
+use super::{BallContact, BallLook, COLOURS};
 
 /// Looks at a match through a host. Times are on the host's clock, s.
 #[derive(Clone, Debug, Default)]
@@ -31,8 +32,15 @@ struct Followed {
     settled: bool,
 }
 
+impl Followed {
+    /// Whether it is the tracker's newer fit of a kick that is known.
+    fn is_same_kick(&self, known: &Self) -> bool {
+        self.by == known.by && self.kick.at.since(known.kick.at).0 < SAME_KICK_US
+    }
+}
+
 impl HostView {
-    /// What `host` sees at `now`; `None` before it has seen a ball.
+    /// View of `host` at `now`; `None` before it has seen a ball.
     pub fn look(&mut self, host: &Host, now: f64) -> Option<BallLook<'_>> {
         let (world, game) = (host.world(), host.game());
         self.robots.clear();
@@ -42,12 +50,11 @@ impl HostView {
         self.find_touches(world, now);
         let (ball, height) = self.ball?;
         let settings = host.settings();
-        let own_end = |team: Colour| {
-            let known = game.own_goal(team);
+        let own_ends = COLOURS.map(|team| {
             let assumed =
                 if team == settings.us { settings.defending } else { settings.defending.opposite() };
-            known.unwrap_or(assumed)
-        };
+            game.own_goal(team).unwrap_or(assumed)
+        });
         Some(BallLook {
             now,
             field: self.field.insert(host.field()),
@@ -56,7 +63,7 @@ impl HostView {
             robots: &self.robots,
             phase: game.phase,
             score: COLOURS.map(|team| game.team(team).score),
-            own_ends: COLOURS.map(own_end),
+            own_ends,
             contacts: &self.contacts,
         })
     }
@@ -66,11 +73,8 @@ impl HostView {
     fn follow_kick(&mut self, world: &World) {
         let newest = world.ball.as_ref().and_then(|ball| ball.kicked);
         let newest = newest.and_then(|kick| Some(Followed { kick, by: kick.by?, settled: false }));
-        let same = |known: &Followed| {
-            newest.is_some_and(|new| new.by == known.by && new.kick.at.since(known.kick.at).0 < SAME_KICK_US)
-        };
         match (&mut self.kick, newest) {
-            (Some(known), Some(new)) if same(known) => known.kick = new.kick,
+            (Some(known), Some(new)) if new.is_same_kick(known) => known.kick = new.kick,
             _ => {
                 self.settle();
                 self.kick = newest;
@@ -97,7 +101,7 @@ impl HostView {
         let ahead = (now - world.time.0 as f64 * 1e-6).clamp(0.0, AHEAD_MAX_S);
         self.ball = Some((ball.after(ahead as f32, &world.models).position, ball.height));
         let low = ball.height < ROBOT_HEIGHT;
-        let near = |at: Point<Field>| low && at.distance(ball.position) < AT_BALL;
+        let near = |at: Point<Field>| low && at.distance(ball.position) < TOUCHES_WITHIN;
         let at_ball = self.robots.iter().filter(|(_, at)| near(*at)).map(|(who, _)| *who);
         let at_ball: Vec<Who> = at_ball.collect();
         for by in at_ball.iter().copied().filter(|who| !self.at_ball.contains(who)).collect::<Vec<_>>() {

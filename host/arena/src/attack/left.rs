@@ -3,6 +3,7 @@
 use geometry::{Field, Point};
 use protocol::Who;
 use rules::Colour;
+use rules::contact::TOUCHES_WITHIN;
 
 /// Robots that had a ball to themselves, and when.
 #[derive(Clone, Debug, Default)]
@@ -33,21 +34,21 @@ impl LeftBalls {
         }
         let robots: Vec<_> = robots.map(|(who, at)| (who, at.distance(ball))).collect();
         for &(who, distance) in &robots {
-            let free = robots.iter().all(|(other, off)| other.colour == who.colour || *off > FREE);
-            if distance < super::AT_BALL && free {
+            let free = robots.iter().all(|(other, off)| other.colour == who.colour || *off > FREE_BEYOND_M);
+            if distance < TOUCHES_WITHIN && free {
                 self.had.retain(|had| had.who != who);
                 self.had.push(Had { who, at: now, ball });
             }
         }
         let mut teams = Vec::new();
         self.had.retain(|had| {
-            let lies = had.ball.distance(ball) < LIES;
-            if lies && now - had.at < LATER {
+            let lies = had.ball.distance(ball) < LIES_WITHIN_M;
+            if lies && now - had.at < LEFT_AFTER_S {
                 return true;
             }
             let off = robots.iter().find(|(who, _)| *who == had.who).map_or(0.0, |(_, off)| *off);
-            let taken = robots.iter().any(|(_, off)| *off < super::AT_BALL);
-            if lies && off > AWAY && !taken {
+            let taken = robots.iter().any(|(_, off)| *off < TOUCHES_WITHIN);
+            if lies && off > LEFT_BEYOND_M && !taken {
                 teams.push(had.who.colour);
             }
             false
@@ -61,10 +62,10 @@ impl LeftBalls {
 }
 
 /// A ball with no opponent this near is free, m.
-const FREE: f32 = 0.45;
+const FREE_BEYOND_M: f32 = 0.45;
 /// A ball lies where it moved by less than this, m.
-const LIES: f32 = 0.1;
+const LIES_WITHIN_M: f32 = 0.1;
 /// Time after which it is looked at, s.
-const LATER: f64 = 0.8;
+const LEFT_AFTER_S: f64 = 0.8;
 /// A robot farther away has left it, m.
-const AWAY: f32 = 0.25;
+const LEFT_BEYOND_M: f32 = 0.25;

@@ -5,7 +5,7 @@ use protocol::Who;
 use rules::limits::BALL_RADIUS;
 use rules::{Colour, FieldSpec, Phase};
 
-/// What [`AttackWatch`](super::AttackWatch) takes of a moment.
+/// A moment of a match, as [`AttackWatch`](super::AttackWatch) takes it.
 #[derive(Clone, Copy, Debug)]
 pub struct BallLook<'a> {
     /// The moment.
@@ -31,18 +31,18 @@ pub struct BallLook<'a> {
 /// A robot at the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BallContact {
-    /// It kicked.
+    /// A kick.
     Kicked {
         /// The robot.
         by: Who,
-        /// When it kicked.
+        /// Time of the kick, s.
         at: f64,
         /// The ball's position then.
         from: Point<Field>,
         /// The ball's velocity along the field surface after it.
         velocity: Vector<Field>,
     },
-    /// The ball has come to it.
+    /// The ball has come to a robot.
     Touched {
         /// The robot.
         by: Who,

@@ -19,6 +19,7 @@ mod look;
 
 use geometry::{Field, Point, Segment, Vector};
 use protocol::Who;
+use rules::contact::TOUCHES_WITHIN;
 use rules::limits::{BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS};
 use rules::{Colour, Phase};
 
@@ -28,14 +29,14 @@ pub use look::{BallContact, BallLook};
 
 use left::LeftBalls;
 
-/// What became of the ball, as it becomes known.
+/// Event of the ball, as it becomes known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BallEvent {
     /// A kick that is no shot is over: another robot has the ball, or play has stopped.
     Kick {
         /// The robot that kicked.
         by: Who,
-        /// When it kicked.
+        /// Time of the kick, s.
         at: f64,
         /// A teammate has the ball.
         arrived: bool,
@@ -49,7 +50,7 @@ pub enum BallEvent {
     Lost {
         /// The team that had the ball.
         team: Colour,
-        /// How its possession ended.
+        /// End of its possession.
         end: PossessionEnd,
     },
     /// The team has scored.
@@ -96,7 +97,7 @@ struct Flight {
     from: Point<Field>,
     speed: f32,
     shot: bool,
-    /// It was reported as over, though the ball is not controlled yet.
+    /// Reported as over, though the ball is not controlled yet.
     landed: bool,
 }
 
@@ -192,13 +193,13 @@ impl AttackWatch {
         }
     }
 
-    /// Who has the ball: the team whose robots alone are at it, after [`CONTROLS_AFTER`].
+    /// Gives the ball to the team whose robots alone are at it, after [`CONTROLS_AFTER`].
     fn control(&mut self, look: &BallLook<'_>) {
         let now = look.now;
         let (mut at, mut near) = ([false; 2], [false; 2]);
         for (who, place) in look.robots.iter().filter(|_| look.height < ROBOT_HEIGHT) {
             let distance = place.distance(look.ball);
-            at[who.colour as usize] |= distance < AT_BALL;
+            at[who.colour as usize] |= distance < TOUCHES_WITHIN;
             near[who.colour as usize] |= distance < PRESSES_WITHIN;
         }
         if let Some(possession) = &mut self.possession
@@ -293,18 +294,15 @@ fn open_share(look: &BallLook<'_>, team: Colour, at: Point<Field>) -> f32 {
     let half = 0.5 * field.goal_width - BALL_RADIUS;
     let opponents = look.robots.iter().filter(|(who, _)| who.colour != team);
     let bodies: Vec<_> = opponents.map(|(_, place)| *place).collect();
-    let free = (0..LINES).filter(|i| {
-        let y = half * (2.0 * (*i as f32 + 0.5) / LINES as f32 - 1.0);
+    let free = (0..GOAL_LINES).filter(|i| {
+        let y = half * (2.0 * (*i as f32 + 0.5) / GOAL_LINES as f32 - 1.0);
         let line = Segment::new(at, Point::new(x, y));
         bodies.iter().all(|body| line.distance_to(*body) > ROBOT_RADIUS + BALL_RADIUS)
     });
-    free.count() as f32 / LINES as f32
+    free.count() as f32 / GOAL_LINES as f32
 }
 
 const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];
-/// A robot whose centre is within this of the ball is at it, m: front plate and ball's radius are 0.09 to
-/// 0.111.
-const AT_BALL: f32 = 0.125;
 /// An opponent this near the ball presses its owner, m.
 const PRESSES_WITHIN: f32 = 0.35;
 /// A ball lost within this time of being pressed was lost in a tackle or scrum, s.
@@ -313,17 +311,18 @@ const PRESSED_WITHIN: f64 = 0.5;
 const CONTROLS_AFTER: f64 = 0.05;
 /// Shorter possessions are deflections, s.
 const POSSESSION_LASTS: f64 = 0.25;
-/// A kick is faster than this, m/s, and longer than this, m.
+/// Speed above which a touch is a kick, m/s.
 const KICK_SPEED: f32 = 1.0;
+/// Length above which a touch is a kick, m.
 const KICK_LENGTH: f32 = 0.5;
-/// A shot is faster than this, m/s, …
+/// Speed above which a kick at the goal is a shot, m/s.
 const SHOT_SPEED: f32 = 3.0;
-/// … and misses a post by less than this, m.
+/// Distance beside a post within which a shot still counts, m.
 const BESIDE_POST: f32 = 0.25;
 /// A volley leaves within this of the ball's arrival, s.
 const VOLLEY_WITHIN: f64 = 0.12;
 /// Lines to the goal's opening that are looked at.
-const LINES: usize = 20;
+const GOAL_LINES: usize = 20;
 
 #[cfg(test)]
 mod tests;

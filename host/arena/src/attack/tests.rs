@@ -14,7 +14,7 @@ fn at(x: f32, y: f32) -> Point<Field> {
 }
 
 #[test]
-fn a_ball_that_a_robot_had_to_itself_and_drove_away_from_is_left_and_one_it_kicked_is_not() {
+fn a_free_ball_that_a_robot_drove_away_from_is_left_and_a_kicked_one_is_not() {
     let mut left = LeftBalls::default();
     let look = |left: &mut LeftBalls, now: f64, ball: Point<Field>, robot: Point<Field>| {
         left.look(now, ball, [(who(Colour::Blue, 1), robot)].into_iter(), true)

@@ -76,7 +76,7 @@ fn moment<'g>(game: &'g Game<'_, '_>) -> Moment<'g> {
 pub(super) fn layout(case: &Case<'_>, opposition: Opposition, seed: u64) -> Layout {
     let parameters = Parameters::four_legged();
     let field = League::FourLegged.field();
-    let bodies = Bodies { field, clear_of_ball: CLEAR_OF_BALL, apart: APART };
+    let bodies = Bodies { field, clear_of_ball: CLEAR_OF_BALL, apart: ROBOTS_APART_M };
     let region = |authored| role_at(authored, parameters).1.unwrap_or_else(|| about(authored));
     let places = situation::draw(case, &bodies, region, seed);
     let opponents = places.opponents.iter().map(|[authored, at]| {
@@ -113,6 +113,6 @@ fn about(at: Point<Field>) -> Region {
 /// Least distance of a robot from the ball at the start, m: at 0.1625 they would touch.
 const CLEAR_OF_BALL: f32 = 0.18;
 /// Least distance between robots at the start, m: two radii and a gap.
-const APART: f32 = 0.3;
+const ROBOTS_APART_M: f32 = 0.3;
 /// Half of the midfield's depth, m (`hil-sim/data/four-legged.toml`).
 const HALF_DEPTH: f32 = 0.75;

@@ -16,8 +16,6 @@ mod small_size;
 
 pub use score::{Score, markdown};
 
-use std::fmt;
-
 use casebase::{Case, CaseBase, GoalEnd, RetrievalSettings};
 use hil_sim::{Fnv, SimulationError, TrialOutcome};
 use rayon::prelude::*;
@@ -29,13 +27,13 @@ use crate::names::CaseNames;
 use crate::recording::RecordedSample;
 
 hil_sim::labels! {
-    /// What the opponents of a case do.
+    /// Behaviour of the opponents of a case.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Opposition {
-        /// They hold their places: bodies that obstruct.
+        /// Opponents hold their places: bodies that obstruct.
         Standing = "standing",
-        /// They play: the paper's scripted ones in the four-legged league, a reactive team in the Small Size
-        /// League.
+        /// Opponents play: the paper's scripted ones in the four-legged league, a reactive team in the Small
+        /// Size League.
         Playing = "playing",
     }
 }
@@ -58,7 +56,7 @@ pub enum Retrieved {
 pub struct Attempt {
     /// The first case that the robots retrieved.
     pub retrieved: Retrieved,
-    /// How the gameplay ended, where the tested case was retrieved.
+    /// End of the gameplay, where the tested case was retrieved.
     pub end: Option<CycleEnd>,
     /// Seconds from the retrieval to that end.
     pub duration: f32,
@@ -79,7 +77,7 @@ impl Attempt {
 /// An attempt as it went.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tape {
-    /// Its events, a line each.
+    /// Events, a line each.
     pub story: Vec<String>,
     /// Ball and robots, oldest first: those of the case in its order, then the opponents.
     pub samples: Vec<RecordedSample>,
@@ -145,25 +143,15 @@ impl<'a> CaseTrial<'a> {
     }
 }
 
-/// Why an attempt cannot be played.
-#[derive(Debug)]
+/// Error that keeps an attempt from being played.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
 pub enum AttemptError {
     /// The four-legged league's simulator failed.
     FourLegged(SimulationError),
     /// The Small Size League's simulator failed.
     SmallSize(GameError),
 }
-
-impl fmt::Display for AttemptError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::FourLegged(error) => error.fmt(f),
-            Self::SmallSize(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for AttemptError {}
 
 #[cfg(test)]
 mod tests;

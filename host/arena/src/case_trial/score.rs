@@ -21,10 +21,10 @@ pub struct Score {
     pub retrieved: usize,
     /// Gameplays played to their end.
     pub completed: usize,
-    /// What was retrieved instead, by name; `none` where no case fitted, `nothing` where no decision was
+    /// Cases that were retrieved instead, by name; `none` where no case fitted, `nothing` where no decision was
     /// made.
     pub instead: BTreeMap<String, usize>,
-    /// How the gameplays that were not completed ended.
+    /// Ends of the gameplays that were not completed.
     pub aborted: BTreeMap<&'static str, usize>,
     /// Mean seconds of the completed gameplays; null without any.
     pub duration_s: Option<f64>,

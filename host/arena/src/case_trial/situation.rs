@@ -88,12 +88,11 @@ fn clear(
     draw: impl Fn(&mut Stream) -> Point<Field>,
     fits: impl Fn(Point<Field>) -> bool,
 ) -> Option<Point<Field>> {
-    let free = |at: &Point<Field>| {
+    (0..DRAWS).map(|_| draw(chance)).find(|at| {
         at.distance(ball) >= bodies.clear_of_ball
             && taken.iter().all(|other| other.distance(*at) >= bodies.apart)
             && fits(*at)
-    };
-    (0..DRAWS).map(|_| draw(chance)).find(free)
+    })
 }
 
 /// Uniform in the ellipse in which the similarity is H.
@@ -103,7 +102,7 @@ fn in_core(chance: &mut Stream, scope: Scope) -> Vector<Field> {
     in_metres(scope, radius * cos, radius * sin)
 }
 
-/// As exp(−(x² + y²)) in the scope's radii, up to the scope's border.
+/// Draws a point by exp(−(x² + y²)) in the scope's radii, up to the scope's border.
 fn on_scope(chance: &mut Stream, scope: Scope) -> Vector<Field> {
     let inside = |(x, y): &(f32, f32)| x * x + y * y <= BORDER;
     let mut bell = || (chance.normal() * math::sqrt(0.5), chance.normal() * math::sqrt(0.5));

@@ -38,7 +38,7 @@ pub(super) fn attempt<'a>(
     mut tape: Option<&mut Tape>,
 ) -> Result<Attempt, GameError> {
     let field = case_trial.league.field();
-    let bodies = Bodies { field, clear_of_ball: CLEAR_OF_BALL, apart: APART };
+    let bodies = Bodies { field, clear_of_ball: CLEAR_OF_BALL, apart: ROBOTS_APART_M };
     let places = situation::draw(case, &bodies, |_| whole(&field), seed);
     let config = config(case_trial, &places, opposition, seed);
     let backend: &mut dyn Backend<'a> = &mut NativeBackend::new(case_trial.base);
@@ -84,7 +84,7 @@ pub(super) fn attempt<'a>(
             cycles: log.cycles(),
             verdict,
             taken: game.events().iter().any(taken),
-            still: game.world().ball.speed() < STILL,
+            still: game.world().ball.speed() < BALL_STILL_M_S,
         };
         if course.over(&moment, case) {
             let progress = game.world().ball.position.x() - places.ball.x();
@@ -241,8 +241,8 @@ const SAMPLE_EVERY: f32 = 0.0395;
 /// Least distance of a robot from the ball at the start, m: at 0.112 they would touch.
 const CLEAR_OF_BALL: f32 = 0.15;
 /// Least distance between robots at the start, m: two radii and a gap.
-const APART: f32 = 0.22;
-/// How far before the goal line the opponents' keeper stands, m: two bodies.
+const ROBOTS_APART_M: f32 = 0.22;
+/// Distance of the opponents' keeper before its goal line, m: two bodies.
 const KEEPER_AHEAD: f32 = 0.36;
 /// A slower ball lies still, m/s.
-const STILL: f32 = 0.02;
+const BALL_STILL_M_S: f32 = 0.02;

@@ -23,7 +23,7 @@ pub enum Answer<'a> {
         case: (),
         /// Number of candidates: 0.
         candidates: u16,
-        /// What differs from retrieval's defaults.
+        /// Settings that differ from retrieval's defaults.
         #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
         settings: &'a [(String, String)],
     },
@@ -49,14 +49,14 @@ pub struct Found<'a> {
     #[serde(serialize_with = "as_object")]
     adapted: Vec<(u8, [i32; 2])>,
     candidates: u16,
-    /// What differs from retrieval's defaults, recorded with every result (docs/case-format.md §3.2); left
-    /// out where nothing does.
+    /// Settings that differ from retrieval's defaults, recorded with every result (docs/case-format.md §3.2);
+    /// left out where nothing does.
     #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
     settings: &'a [(String, String)],
 }
 
 impl<'a> Answer<'a> {
-    /// Of a retrieval from that library.
+    /// Answer of a retrieval from that library.
     pub fn new(
         library_handle: &'a LibraryHandle,
         base: &CaseBase<'_>,
@@ -103,12 +103,12 @@ fn adapted(
     case.robots().zip(&found.correspondence).map(place).collect()
 }
 
-/// To four decimals.
+/// Rounds to four decimals.
 pub(super) fn similarity(found: &Match) -> f64 {
     rounded(found.similarity, 1e4)
 }
 
-/// In mm, to two decimals.
+/// Rounds to two decimals, mm.
 pub(super) fn cost(found: &Match) -> f64 {
     rounded(found.cost, 1e2)
 }

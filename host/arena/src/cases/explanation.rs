@@ -42,7 +42,7 @@ pub struct Explanation<'a> {
     /// Only on request.
     #[serde(skip_serializing_if = "Option::is_none")]
     counterfactuals: Option<Vec<WhatIf>>,
-    /// What differs from retrieval's defaults; left out where nothing does.
+    /// Settings that differ from retrieval's defaults; left out where nothing does.
     #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
     settings: &'a [(String, String)],
 }
@@ -290,7 +290,7 @@ impl Evidence {
     }
 }
 
-/// How far the ball lies outside the ball's scope, mm, on the line to its centre.
+/// Distance of the ball outside the ball's scope, mm, on the line to its centre.
 fn ball_outside(case: &Case<'_>, problem: &Problem, chosen: &Chosen) -> f64 {
     let from_centre = case.shift(problem.ball);
     let exponent = f64::from(case.ball_scope().exponent(from_centre));

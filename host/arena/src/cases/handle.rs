@@ -1,6 +1,5 @@
 //! `handle`: a case library: built in, or one league's directory read at run time (docs/case-format.md §5).
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use case_library::{LEAGUES, League};
@@ -26,7 +25,7 @@ impl LibraryHandle {
         found.ok_or_else(|| LibraryError::UnknownLeague(league.to_owned()))
     }
 
-    /// One league's directory; `on_progress` is told how many of how many steps are done.
+    /// One league's directory; `on_progress` gets the number of finished steps and of all.
     pub fn read(directory: &Path, on_progress: impl FnMut(usize, usize)) -> Result<Self, LibraryError> {
         if !directory.is_dir() {
             return Err(LibraryError::NoDirectory(directory.to_owned()));
@@ -43,12 +42,11 @@ impl LibraryHandle {
         if reduction == Reduction::NONE || matches!(self, Self::Directory(_, _, None)) {
             return Ok(self);
         }
-        let refused = |findings| LibraryError::Faulty {
+        let built = self.files().and_then(|files| case_tools::build_reduced(&files, reduction));
+        let library = built.map_err(|findings| LibraryError::Faulty {
             directory: self.directory().map_or_else(|| self.league().into(), Path::to_owned),
             findings,
-        };
-        let files = self.files().map_err(refused)?;
-        let library = case_tools::build_reduced(&files, reduction).map_err(refused)?;
+        })?;
         let library: &'static Library = Box::leak(Box::new(library));
         Ok(Self::Directory(library, library.base(), None))
     }
@@ -61,7 +59,7 @@ impl LibraryHandle {
         }
     }
 
-    /// Its files: those of its directory as they are now, or those of a built-in league.
+    /// Files: those of its directory as they are now, or those of a built-in league.
     pub fn files(&self) -> Result<Files, Vec<Finding>> {
         match self {
             Self::BuiltIn(league, _) => Ok(built_in_files(league)),
@@ -183,12 +181,21 @@ fn authored(id: CaseId) -> usize {
     usize::from(id.0) / Symmetry::ALL.len()
 }
 
-/// Why there is no library.
-#[derive(Debug)]
+/// Error that keeps a library from being opened.
+#[derive(Debug, thiserror::Error)]
 pub enum LibraryError {
     /// The named directory does not exist.
+    #[error(
+        "no library at {}: no such directory; take one league's directory, the one that holds league.toml",
+        printable(&.0.to_string_lossy())
+    )]
     NoDirectory(PathBuf),
     /// The case files in a directory are faulty.
+    #[error(
+        "the library at {} is refused:\n{}correct the files; `onetwo cases check --library DIR` lists the errors again, \
+         with warnings",
+        printable(&.directory.to_string_lossy()), errors(.findings)
+    )]
     Faulty {
         /// The league's directory.
         directory: PathBuf,
@@ -196,43 +203,26 @@ pub enum LibraryError {
         findings: Vec<Finding>,
     },
     /// No built-in league has that name.
+    #[error("no built-in league {:?}; take one of: {}", .0, leagues())]
     UnknownLeague(String),
     /// Cases of a field that no simulator plays on.
+    #[error(
+        "the cases of {league} cannot be played: the simulator plays on the four-legged league's field of 5400 x 3600 mm, \
+         and theirs is another; take league four-legged or a library for that field"
+    )]
     NoSimulator {
         /// The league of the library.
         league: String,
     },
 }
 
-impl fmt::Display for LibraryError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoDirectory(directory) => write!(
-                f,
-                "no library at {}: no such directory; take one league's directory, the one that holds league.toml",
-                printable(&directory.to_string_lossy())
-            ),
-            Self::Faulty { directory, findings } => {
-                let errors = findings.iter().filter(|finding| finding.severity == Severity::Error);
-                writeln!(f, "the library at {} is refused:", printable(&directory.to_string_lossy()))?;
-                for finding in errors {
-                    writeln!(f, "  {finding}")?;
-                }
-                f.write_str(
-                    "correct the files; `onetwo cases check --library DIR` lists the errors again, with warnings",
-                )
-            }
-            Self::UnknownLeague(name) => {
-                let known: Vec<_> = LEAGUES.iter().map(|league| league.name).collect();
-                write!(f, "no built-in league {name:?}; take one of: {}", known.join(", "))
-            }
-            Self::NoSimulator { league } => write!(
-                f,
-                "the cases of {league} cannot be played: the simulator plays on the four-legged league's field of \
-                 5400 x 3600 mm, and theirs is another; take league four-legged or a library for that field"
-            ),
-        }
-    }
+/// A line for each error among these findings.
+fn errors(findings: &[Finding]) -> String {
+    let errors = findings.iter().filter(|finding| finding.severity == Severity::Error);
+    errors.map(|finding| format!("  {finding}\n")).collect()
 }
 
-impl std::error::Error for LibraryError {}
+/// Names of the built-in leagues.
+fn leagues() -> String {
+    LEAGUES.iter().map(|league| league.name).collect::<Vec<_>>().join(", ")
+}

@@ -55,12 +55,13 @@ pub fn value(problem: &Problem) -> Value {
 /// Longest place that is printed, characters: a key of the line may be as long as the line.
 const PLACE_LEN: usize = 60;
 
-/// Why a line is not a valid problem.
-#[derive(Debug, PartialEq, Eq)]
+/// Refusal of a line that is not a valid problem.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}{reason}", .place.as_ref().map(|place| format!("{place}: ")).unwrap_or_default())]
 pub struct Malformed {
-    /// Where in the line, if not all of it.
+    /// Place in the line, if not all of it.
     place: Option<String>,
-    /// What was expected there.
+    /// Expected value.
     reason: String,
 }
 
@@ -70,18 +71,9 @@ impl Malformed {
         Self { place: Some(excerpt(place, PLACE_LEN)), reason: reason.into() }
     }
 
-    /// Of the whole line.
+    /// Refuses the whole line.
     pub fn line(reason: impl Into<String>) -> Self {
         Self { place: None, reason: reason.into() }
-    }
-}
-
-impl fmt::Display for Malformed {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.place {
-            Some(place) => write!(f, "{place}: {}", self.reason),
-            None => f.write_str(&self.reason),
-        }
     }
 }
 

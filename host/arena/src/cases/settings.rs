@@ -1,7 +1,5 @@
 //! `settings`: retrieval's named settings, changed by name and value (docs/case-format.md §3.2).
 
-use std::fmt;
-
 use casebase::{RetrievalSettings, SettingError};
 
 /// Settings of the retrieval.
@@ -33,7 +31,8 @@ pub fn described(settings: &RetrievalSettings) -> Vec<(String, String)> {
 }
 
 /// A name or value that retrieval does not know.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("{assignment}: {error}")]
 pub struct SettingFailure {
     /// `NAME=VALUE` as given.
     pub assignment: String,
@@ -42,17 +41,8 @@ pub struct SettingFailure {
 }
 
 impl SettingFailure {
-    /// Of that assignment.
+    /// Error of that assignment.
     pub fn new(name: &str, value: &str, error: SettingError) -> Self {
         Self { assignment: format!("{name}={value}"), error }
     }
 }
-
-impl fmt::Display for SettingFailure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { assignment, error } = self;
-        write!(f, "{assignment}: {error}")
-    }
-}
-
-impl std::error::Error for SettingFailure {}

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::NameOf;
 use super::answer::rounded;
 
-/// What would make one case the winner, or why no single change does.
+/// Single changes that would make one case the winner, or why there is none.
 #[derive(Debug, Serialize)]
 pub(super) struct WhatIf {
     id: u16,
@@ -29,7 +29,6 @@ enum WhatIfLine {
     Nothing {
         no_single_move: &'static str,
         #[serde(skip)]
-        #[serde(rename = "words")]
         description: String,
     },
 }

@@ -44,7 +44,7 @@ pub struct TeamSetup {
     pub colour: Colour,
     /// Number of robots on the field at the start.
     pub robots: u8,
-    /// What decides its open play.
+    /// Strategy of its open play.
     pub plays: Team,
     /// Approach of robots without an order of a host.
     pub approach: Approach,
@@ -56,14 +56,10 @@ pub struct TeamSetup {
     pub strategy: Option<StrategyStarter>,
 }
 
-impl GameConfig {
-    /// Two full teams of ours, for `duration_s` simulated seconds.
-    pub fn new(league: League, seed: u64, duration_s: f64) -> Self {
-        let robots = match league {
-            League::DivisionA => 11,
-            _ => 6,
-        };
-        let team = |colour| TeamSetup {
+impl TeamSetup {
+    /// Our team with its default tactics and this number of robots.
+    fn full(colour: Colour, robots: u8) -> Self {
+        Self {
             colour,
             robots,
             plays: Team::Ours,
@@ -71,6 +67,16 @@ impl GameConfig {
             settings: RetrievalSettings::default(),
             tactics: Tactics::default(),
             strategy: None,
+        }
+    }
+}
+
+impl GameConfig {
+    /// Two full teams of ours, for `duration_s` simulated seconds.
+    pub fn new(league: League, seed: u64, duration_s: f64) -> Self {
+        let robots = match league {
+            League::DivisionA => 11,
+            _ => 6,
         };
         let total = Duration((duration_s * 1e6) as u64);
         Self {
@@ -81,7 +87,7 @@ impl GameConfig {
                 clock: MatchClock::Simulated { total },
                 ..RefereeSettings::new(league)
             },
-            teams: [team(Colour::Yellow), team(Colour::Blue)],
+            teams: [Colour::Yellow, Colour::Blue].map(|colour| TeamSetup::full(colour, robots)),
             air: AirSettings::default(),
             world: WorldChoice::Nominal,
             names: CaseNames::new(
@@ -110,7 +116,7 @@ impl GameConfig {
 }
 
 impl GameConfig {
-    /// What decides a side's open play.
+    /// Strategy of a side's open play.
     pub fn plays(&self, colour: Colour) -> Team {
         self.teams.iter().find(|setup| setup.colour == colour).map_or(Team::Ours, |setup| setup.plays)
     }

@@ -133,7 +133,7 @@ impl<'a> Game<'a> {
         }
     }
 
-    /// Of a team's radio these links have their own loss from now on, and no others.
+    /// Gives these links of a team's radio a loss of their own from now on, and no others.
     pub fn lose_links(&mut self, team: Colour, links: Vec<LinkLoss>) {
         self.teams[team as usize].lose_links(links);
     }

@@ -1,7 +1,7 @@
 //! `holds`: spells in which a robot holds the ball in play: how long, and how often it turns to and fro. From
 //! the true world. s, m, rad.
 //!
-//! A robot holds the ball while the ball is on the field surface within [`NEAR`] of its front plate. A gap of
+//! A robot holds the ball while the ball is on the field surface within [`HELD_WITHIN_M`] of its front plate. A gap of
 //! up to [`GAP`] belongs to the spell: a ball that rolls off the roller and is taken again was not released.
 //! A spell ends with the phase.
 
@@ -110,7 +110,7 @@ impl Holds {
         let (team, lasted) = (spell.who.colour, (spell.until - spell.from) as f32);
         let longest = &mut self.longest[team as usize];
         *longest = longest.max(lasted);
-        if lasted >= LONG {
+        if lasted >= LONG_HOLD_S {
             self.over[team as usize] += 1;
             self.long.push(Hold {
                 team: team.label(),
@@ -134,7 +134,7 @@ impl Holds {
         self.longest[team as usize]
     }
 
-    /// Number of a team's spells that lasted for [`LONG`] and longer.
+    /// Number of a team's spells that lasted for [`LONG_HOLD_S`] and longer.
     pub(super) fn over(&self, team: Colour) -> u32 {
         self.over[team as usize]
     }
@@ -150,16 +150,16 @@ fn holds(robot: &Robot, ball: &Ball) -> bool {
     let at = robot.pose.to_body(ball.position);
     let half = (robot.body.radius.powi(2) - robot.body.front.powi(2)).max(0.0).sqrt();
     let gap = at.x() - robot.body.front - BALL_RADIUS;
-    ball.height < BODY_HEIGHT && at.x() > 0.0 && gap <= NEAR && at.y().abs() <= half + NEAR
+    ball.height < BODY_HEIGHT && at.x() > 0.0 && gap <= HELD_WITHIN_M && at.y().abs() <= half + HELD_WITHIN_M
 }
 
 /// The ball is at the front within this distance, m.
-const NEAR: f32 = 0.02;
+const HELD_WITHIN_M: f32 = 0.02;
 /// A spell continues after a gap of at most this, s: longer than a ball bounces off a roller, shorter than it
 /// takes to release it, back off and come again.
 const GAP: f64 = 0.25;
 /// Duration from which a spell is long, s: the opponents' robots reach it twice in ten minutes.
-const LONG: f32 = 2.5;
+const LONG_HOLD_S: f32 = 2.5;
 /// A turn by less than this is not counted, rad: 5°.
 const SWING: f32 = 0.087;
 /// Radius of the ball, m (rules).

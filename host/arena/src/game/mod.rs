@@ -78,38 +78,29 @@ pub struct Game<'a> {
     config: GameConfig,
 }
 
-/// Why a match cannot be played.
-#[derive(Debug)]
+/// Error that keeps a match from being played.
+#[derive(Debug, thiserror::Error)]
 pub enum GameError {
     /// A robot's computer failed.
+    #[error("{} {}: {error}", .who.colour.label(), .who.id)]
     Computer {
         /// The robot with that computer.
         who: Who,
-        /// What the computer's back end reported.
+        /// Error of the computer's back end.
         error: McuError,
     },
     /// The league has no such matches.
+    #[error("{0}")]
     League(String),
     /// A team's own strategy cannot be started.
+    #[error("the strategy `{name}` does not start: {error}")]
     Strategy {
-        /// Its command.
+        /// Command of the program.
         name: String,
-        /// Why not.
+        /// The operating system's error.
         error: std::io::Error,
     },
 }
-
-impl std::fmt::Display for GameError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Computer { who, error } => write!(f, "{} {}: {error}", who.colour.label(), who.id),
-            Self::League(description) => f.write_str(description),
-            Self::Strategy { name, error } => write!(f, "the strategy `{name}` does not start: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for GameError {}
 
 impl<'a> Game<'a> {
     /// Robots on their halves, the ball in the middle, the referee before its first command.
@@ -179,12 +170,12 @@ impl<'a> Game<'a> {
         &self.events
     }
 
-    /// What became of every case, and what the teams made of the ball.
+    /// Ledger of every case, and of what the teams made of the ball.
     pub fn ledger(&self) -> &MatchLedger {
         &self.ledger
     }
 
-    /// Which robots held the ball in play, and for how long.
+    /// Robots that held the ball in play, and for how long.
     fn holds(&self) -> &Holds {
         &self.holds
     }
@@ -222,14 +213,7 @@ impl<'a> Game<'a> {
     fn keep(&self, ledger: &mut MatchLedger) {
         let present = self.world.robots().iter().filter(|robot| robot.present);
         let robots: Vec<_> = present.map(|robot| (robot.who, robot.pose.position)).collect();
-        let contact = |event: &PhysicsEvent| match *event {
-            PhysicsEvent::Kicked { robot, at, velocity, .. } => {
-                Some(BallContact::Kicked { by: robot, at: self.time(), from: at, velocity })
-            }
-            PhysicsEvent::Touched { robot, at } => Some(BallContact::Touched { by: robot, at }),
-            _ => None,
-        };
-        let contacts: Vec<_> = self.events.iter().filter_map(contact).collect();
+        let contacts: Vec<_> = self.events.iter().filter_map(|event| contact(event, self.time())).collect();
         let colours = [Colour::Yellow, Colour::Blue];
         let look = BallLook {
             now: self.time(),
@@ -336,6 +320,17 @@ pub fn play_until(
 /// A watcher that does nothing.
 pub struct NoWatcher;
 impl Watcher for NoWatcher {}
+
+/// The contact with the ball that a physical event at this time is, if any.
+fn contact(event: &PhysicsEvent, time: f64) -> Option<BallContact> {
+    match *event {
+        PhysicsEvent::Kicked { robot, at, velocity, .. } => {
+            Some(BallContact::Kicked { by: robot, at: time, from: at, velocity })
+        }
+        PhysicsEvent::Touched { robot, at } => Some(BallContact::Touched { by: robot, at }),
+        _ => None,
+    }
+}
 
 /// Our robots' numbers in a team of `robots`.
 pub fn numbers(robots: u8) -> impl Iterator<Item = RobotId> {

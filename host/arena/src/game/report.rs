@@ -37,7 +37,7 @@ pub struct GameReport {
     pub long_holds: Vec<Hold>,
     /// Number of stops because the ball made no progress.
     pub no_progress: u32,
-    /// What decided each side's open play.
+    /// Strategy of each side's open play.
     pub teams: PerTeam<Team>,
     /// Further counts of each team.
     pub metrics: PerTeam<TeamReport>,
@@ -123,11 +123,11 @@ pub struct TeamReport {
     pub longest_hold_s: f32,
     /// Number of its spells that lasted for 2.5 s and longer.
     pub holds_over_2_5s: u32,
-    /// How its possessions ended, its kicks, shots and left balls.
+    /// Ends of its possessions, its kicks, shots and left balls.
     pub attack: AttackCounts,
     /// Passes of its restarts as its host followed them, planned free kicks, and changes of role.
     pub play: PlayCounters,
-    /// What became of every case that its robots played.
+    /// Plays of every case of its robots and what followed.
     pub cases: CaseTable,
 }
 

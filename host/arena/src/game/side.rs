@@ -63,9 +63,6 @@ impl<'a> Team<'a> {
         let settings = host_settings(config, colour);
         let seed = config.seed ^ colour as u64;
         let air = Air::with_host(link.over(&config.air), seed, &ids);
-        let started = |starter: &StrategyStarter| {
-            starter.start().map_err(|error| GameError::Strategy { name: starter.name().to_owned(), error })
-        };
         let strategy = setup.strategy.as_ref().map(started).transpose()?;
         let host = Host::new(settings, Instant(0));
         Ok(Self { host, strategy, colour, air, players })
@@ -115,7 +112,7 @@ impl<'a> Team<'a> {
         }
     }
 
-    /// Its radio loses this share of packets from now on.
+    /// Makes its radio lose this share of packets from now on.
     pub(super) fn lose(&mut self, share: f32) {
         let settings = AirSettings { loss: share, ..self.air.settings().clone() };
         self.air.set(settings);
@@ -203,18 +200,23 @@ impl<'a> Team<'a> {
     }
 }
 
+/// Starts the program of a strategy.
+fn started(starter: &StrategyStarter) -> Result<Box<dyn StrategyLink>, GameError> {
+    starter.start().map_err(|error| GameError::Strategy { name: starter.name().to_owned(), error })
+}
+
 /// The settings that a team's host starts with; robots receive each other, so it relays nothing.
 pub(super) fn host_settings(config: &GameConfig, colour: Colour) -> HostSettings {
-    let usual = HostSettings::new(colour, config.league, 1);
+    let defaults = HostSettings::new(colour, config.league, 1);
     HostSettings {
         defending: own_goal(config, colour),
         keeper: config.referee.team(colour).keeper,
         team: config.plays(colour),
-        radio: RadioSettings { relay: Relay::No, ..usual.radio },
+        radio: RadioSettings { relay: Relay::No, ..defaults.radio },
         tactics: config.teams[colour as usize].tactics,
         external: config.teams[colour as usize].strategy.is_some(),
         cases: config.cases,
-        ..usual
+        ..defaults
     }
 }
 

@@ -21,8 +21,8 @@ impl MatchLog {
         std::mem::take(&mut self.lines)
     }
 
-    fn add(&mut self, time: f64, description: &str) {
-        self.lines.push(format!("{time:7.2} s  {description}"));
+    fn add(&mut self, time: f64, event: &str) {
+        self.lines.push(format!("{time:7.2} s  {event}"));
     }
 }
 

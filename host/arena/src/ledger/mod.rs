@@ -71,7 +71,7 @@ impl MatchLedger {
         }
     }
 
-    /// What the teams made of the ball.
+    /// Possessions, kicks and shots of both teams.
     pub fn attack(&self) -> &AttackWatch {
         &self.attack
     }
@@ -106,12 +106,12 @@ pub struct TeamLedger {
     taken: [Option<CycleId>; RobotId::COUNT],
 }
 
-/// What the log of cycles does not know of a decided cycle.
+/// Knowledge of a decided cycle beside the log of cycles.
 #[derive(Clone, Copy, Debug)]
 struct Decided {
     at: f64,
     opponents: usize,
-    /// What it rests on, once its coordinator has reported it.
+    /// Grounds of the decision, once its coordinator has reported them.
     grounds: Option<Grounds>,
     passes: u32,
     arrived: u32,
@@ -166,7 +166,7 @@ impl TeamLedger {
         }
     }
 
-    /// A coordinator's report of its decision; false where no beacon has told of that yet.
+    /// A coordinator's report of its decision; false where no beacon has reported it yet.
     fn report(&mut self, report: &DecisionReport) -> bool {
         let Some(decided) = self.decided.get_mut(&report.cycle) else { return false };
         if decided.grounds.replace(report.grounds).is_none() {
@@ -229,7 +229,7 @@ impl TeamLedger {
     }
 }
 
-/// Why no case is played, as a name for programs.
+/// Reason for which no case is played, as a name for programs.
 const fn because(grounds: Option<Grounds>) -> &'static str {
     match grounds {
         Some(Grounds::Retrieved) => "none-fits",

@@ -7,40 +7,28 @@ use serde::{Deserialize, Serialize};
 
 use crate::cycles::CycleEnd;
 
-/// What followed a play; the greater counts where several did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Followed {
-    /// Nothing in its window.
-    Nothing,
-    /// The referee stopped play for another reason than a goal or a ball that went out.
-    Stop,
-    /// The team's ball went out.
-    Out,
-    /// The opponents got the ball, by a kick to them, a tackle, or because it was left.
-    Loss,
-    /// A shot without a goal.
-    Shot,
-    /// A goal.
-    Goal,
+hil_sim::labels! {
+    /// Event that followed a play; the greater counts where several did.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Followed {
+        /// Nothing in its window.
+        Nothing = "nothing",
+        /// The referee stopped play for another reason than a goal or a ball that went out.
+        Stop = "stop",
+        /// The team's ball went out.
+        Out = "out",
+        /// The opponents got the ball, by a kick to them, a tackle, or because it was left.
+        Loss = "loss",
+        /// A shot without a goal.
+        Shot = "shot",
+        /// A goal.
+        Goal = "goal",
+    }
 }
 
 /// All that may follow, in the order of tables.
 pub const FOLLOWED: [Followed; 6] =
     [Followed::Goal, Followed::Shot, Followed::Loss, Followed::Out, Followed::Stop, Followed::Nothing];
-
-impl Followed {
-    /// Its name for programs.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Goal => "goal",
-            Self::Shot => "shot",
-            Self::Loss => "loss",
-            Self::Out => "out",
-            Self::Stop => "stop",
-            Self::Nothing => "nothing",
-        }
-    }
-}
 
 /// Counts of a case's plays.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,7 +41,7 @@ pub struct CaseTally {
     pub ends: BTreeMap<String, u32>,
     /// Passes kicked in these plays.
     pub passes: u32,
-    /// Of these, those that a teammate received.
+    /// Passes of these that a teammate received.
     pub passes_arrived: u32,
     /// Plays by what followed ([`Followed::label`]); what followed none is left out.
     pub followed_by: BTreeMap<String, u32>,
@@ -105,7 +93,7 @@ pub struct CaseLine {
     /// All of its plays.
     #[serde(flatten)]
     pub all: CaseTally,
-    /// Its plays by the number of opponents in the problem.
+    /// Plays by the number of opponents in the problem.
     pub by_opponents: BTreeMap<u8, CaseTally>,
 }
 
@@ -169,7 +157,7 @@ impl CaseTable {
         format!("decisions: {retrieved} to play a case, {finished} of them finished; {no_case} to play none")
     }
 
-    /// As a column: for each case and number of opponents its counts,
+    /// Writes a column: for each case and number of opponents its counts,
     /// `center/pass@6:retrieved=3,end.timeout=1`.
     pub fn column(&self) -> String {
         let entry = |case: &str, opponents: u8, counts: &[(String, u32)]| {
@@ -237,5 +225,5 @@ impl CaseTable {
     }
 }
 
-/// Where a column tells of decisions without a case; no case has such a name, which has no region.
+/// Name of decisions without a case in a column; no case has it, as it has no region.
 const NO_CASE: &str = "no-case";

@@ -143,7 +143,7 @@ fn ball_path(page: &mut Page, recording: &Recording) {
     }
 }
 
-/// Which robot controls the ball.
+/// Robot that controls the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Control {
     Carried(usize),

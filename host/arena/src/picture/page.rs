@@ -25,7 +25,7 @@ impl Px {
         geometry::math::hypot(self.x - other.x, self.y - other.y)
     }
 
-    /// In the writer's coordinates: y up.
+    /// Converts to the writer's coordinates: y up.
     fn at(self) -> At {
         [f64::from(self.x), -f64::from(self.y)]
     }
@@ -37,12 +37,12 @@ pub(super) const SCALE: f32 = 160.0;
 /// A sheet under construction.
 pub(super) struct Page {
     svg: Svg,
-    /// Where the field's centre is.
+    /// Place of the field's centre.
     origin: Px,
 }
 
 impl Page {
-    /// With the four-legged field on it.
+    /// Sheet with the four-legged field on it.
     pub(super) fn new(origin: Px) -> Self {
         let colors = Theme::Light.colors();
         let mut field = Svg::default();
@@ -59,7 +59,7 @@ impl Page {
         Self { svg, origin }
     }
 
-    /// Where a point of the field is on the sheet.
+    /// Place of a point of the field on the sheet.
     pub(super) fn place(&self, point: Point<Field>) -> Px {
         self.origin.moved(point.x() * SCALE, -point.y() * SCALE)
     }

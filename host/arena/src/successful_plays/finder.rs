@@ -49,7 +49,7 @@ pub(super) struct Follower {
     pub(super) found: Vec<Found>,
 }
 
-/// Where everything was.
+/// Places of ball and robots.
 #[derive(Clone, Debug)]
 struct Scene {
     at: f64,
@@ -121,14 +121,9 @@ impl Follower {
                 if !leads_to(chain, &kick) {
                     chain.clear();
                 }
-                let teammate = |contact: &BallContact| {
-                    let (who, place) = match *contact {
-                        BallContact::Kicked { by, from, .. } => (by, from),
-                        BallContact::Touched { by, at } => (by, at),
-                    };
-                    (who.colour == by.colour && who != by).then_some((who, place))
-                };
-                match look.contacts.iter().find_map(teammate).filter(|_| arrived) {
+                let mut contacts = look.contacts.iter().map(robot_and_place);
+                let teammate = contacts.find(|(who, _)| who.colour == by.colour && *who != by);
+                match teammate.filter(|_| arrived) {
                     Some((receiver, reception)) => {
                         chain.push(Pass { kick, receiver, received: look.now, reception });
                     }
@@ -181,20 +176,20 @@ impl Follower {
         let team = shot.by.colour;
         let sign = look.own_ends[team as usize].opposite().sign() as f32;
         let places = [scene.ball].into_iter().chain(passes.iter().map(|pass| pass.reception));
-        let holding = |(kick, got): (Kick, Point<Field>)| Holding {
-            robot: kick.by.id.number(),
-            got: seen(got, sign),
-            left: seen(kick.from, sign),
-        };
         let of = |own: bool| {
             let robots = scene.robots.iter().filter(move |(who, _)| (who.colour == team) == own);
             robots.map(|(who, at)| (who.id.number(), seen(*at, sign))).take(ROBOTS_MAX)
         };
+        let holdings = kicks().zip(places).map(|(kick, got)| Holding {
+            robot: kick.by.id.number(),
+            got: seen(got, sign),
+            left: seen(kick.from, sign),
+        });
         Some(SuccessfulPlay {
             field: size(look.field),
             teammates: of(true).collect(),
             opponents: of(false).map(|(_, at)| at).collect(),
-            holdings: kicks().zip(places).map(holding).collect(),
+            holdings: holdings.collect(),
             end: PlayEnd::Shot(crossing(look.field, look.own_ends[team as usize], shot)),
             goal,
         })
@@ -222,7 +217,15 @@ fn leads_to(chain: &[Pass], kick: &Kick) -> bool {
     })
 }
 
-/// Where the kick's line crosses the goal line that its team attacks, mm, seen in attack towards +x.
+/// The robot of a contact, and where the ball was.
+fn robot_and_place(contact: &BallContact) -> (Who, Point<Field>) {
+    match *contact {
+        BallContact::Kicked { by, from, .. } => (by, from),
+        BallContact::Touched { by, at } => (by, at),
+    }
+}
+
+/// Place where the kick's line crosses the goal line that its team attacks, mm, seen in attack towards +x.
 fn crossing(field: &FieldSpec, own: GoalEnd, kick: &Kick) -> i32 {
     let sign = own.opposite().sign() as f32;
     let (x, y) = (kick.from.x() * sign, kick.from.y() * sign);

@@ -16,7 +16,7 @@ pub struct LeggedPlay {
     held: Vec<(Holding, Scene)>,
     /// The attacker whose kick nobody has touched since.
     passes: Option<u8>,
-    /// Where the last kick of an attacker leads, by its start and its stop position.
+    /// Start and stop position of the last kick of an attacker.
     kick: Option<[Point<Field>; 2]>,
     found: Option<SuccessfulPlay>,
 }

@@ -27,7 +27,7 @@ pub struct SuccessfulPlay {
     pub opponents: Vec<[i32; 2]>,
     /// The robots that had the ball, in this order: each passed it to the next one. Never empty.
     pub holdings: Vec<Holding>,
-    /// How the last one ended it.
+    /// Kick that ended it.
     pub end: PlayEnd,
     /// Whether a goal followed: in trials one that counts as to goal.
     pub goal: bool,
@@ -36,7 +36,7 @@ pub struct SuccessfulPlay {
 /// The time in which a robot had the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Holding {
-    /// Its id.
+    /// Id of the robot.
     pub robot: u8,
     /// The ball's place when it got it, mm.
     pub got: [i32; 2],

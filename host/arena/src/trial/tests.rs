@@ -115,7 +115,7 @@ fn the_retrievers_are_those_with_the_highest_ids() {
 }
 
 #[test]
-fn without_cases_the_team_plays_reactively_and_says_so() {
+fn without_cases_the_team_plays_reactively_and_its_report_shows_it() {
     let empty = config(1).with_library(CaseBase::default(), CaseNames::default());
     let report = run(&empty, Box::new(NativeBackend::new(empty.base)), &mut []).unwrap();
     assert_eq!((report.cases.individual, report.cases.cooperative), (0, 0));

@@ -4,7 +4,7 @@
 use std::net::{SocketAddr, ToSocketAddrs as _};
 
 use arena::Profile;
-use study::evaluation::Shard;
+use study::store::Shard;
 use casebase::GoalEnd;
 use firmware_build::{Board, ImageBody, Program, boards};
 use hil_sim::small_size::network::RefereeKind;

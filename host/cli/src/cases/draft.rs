@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use study::evaluation::EvaluationError;
+use study::store::EvaluationError;
 use feed::recording::{OpenLibrary, collect};
 use study::learning::{Change, RecordedDraft, draft};
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use study::evaluation::{EvaluationError, Shard};
+use study::store::{EvaluationError, Shard};
 use clap::Args;
 use feed::recording::{OpenLibrary, collect};
 use feed::refusals;

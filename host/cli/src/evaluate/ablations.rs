@@ -8,10 +8,8 @@ use std::process::ExitCode;
 
 use ::report::{Ablation, Facts};
 use clap::Args;
-use study::evaluation::{
-    ARMS, Arm, EvaluationError, EvaluationPlan, Shard, ablation_table, csv_hash, effects, to_csv,
-    write_effects,
-};
+use study::evaluation::{ARMS, Arm, EvaluationPlan, ablation_table, effects, write_effects};
+use study::store::{EvaluationError, Shard, StoredExperiment, csv_hash, to_csv};
 
 use super::report::{self, PageArgs};
 use super::work::{self, WorkArgs};

@@ -8,7 +8,8 @@
 use std::process::ExitCode;
 
 use clap::Args;
-use study::evaluation::{EvaluationPlan, Shard};
+use study::evaluation::EvaluationPlan;
+use study::store::Shard;
 
 use super::report::ReportArgs;
 use super::work::{self, WorkArgs};

@@ -14,12 +14,12 @@ use hil_sim::small_size::worlds::WorldPlan;
 use host::strategy::{Tactics, Team};
 use rules::League;
 use serde_json::json;
-use study::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
 use study::matches::{
     Effect, MatchIdentity, MatchPlan, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes,
     calibration_plot, check_same_matches, compare_matches, comparison_table, effects, markdown, our_passes,
     outcomes, plot,
 };
+use study::store::{EvaluationError, Shard, StoredExperiment, csv_hash, merge, to_csv};
 
 use super::merge::shards;
 use super::report::insert;

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use study::evaluation::{Entry, EvaluationError, Kept, Results, Shard, merge, read};
+use study::evaluation::Results;
+use study::store::{EvaluationError, Kept, Row, Shard, merge, read};
 
 use super::report::{self, ReportArgs};
 use super::work;
@@ -37,7 +38,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The files of shards in a directory, in the order of their names.
-pub(super) fn shards<R: Entry>(directory: &Path) -> Result<Vec<Kept<R>>, EvaluationError> {
+pub(super) fn shards<R: Row>(directory: &Path) -> Result<Vec<Kept<R>>, EvaluationError> {
     let failed = |error| EvaluationError::File { file: directory.to_owned(), error };
     let mut files = Vec::new();
     for entry in std::fs::read_dir(directory).map_err(failed)? {

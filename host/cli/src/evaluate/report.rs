@@ -14,7 +14,8 @@ use casebase::RetrievalSettings;
 use clap::Args;
 use figures::FigureFile;
 use report::{Ablation, Facts, Map, Report};
-use study::evaluation::{Identity, Results, compare, in_words, merge, paper};
+use study::evaluation::{Identity, Results, compare, paper};
+use study::store::{in_words, merge};
 
 use super::{merge as shards, work};
 use crate::Failure;

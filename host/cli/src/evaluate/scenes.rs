@@ -8,7 +8,7 @@ use clap::Args;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::strategy::{ROUND_1, Team};
 use rules::League;
-use study::evaluation::{EvaluationError, csv_hash, to_csv};
+use study::store::{EvaluationError, csv_hash, to_csv};
 use study::matches::MatchTeam;
 use study::scenes::{SceneEffect, ScenePlan, scene_effects, scene_table};
 

@@ -6,7 +6,8 @@ use arena::Profile;
 use brain::Approach;
 use clap::Args;
 use hil_sim::{Configuration, Scenario};
-use study::evaluation::{EvaluationCell, EvaluationPlan, Shard};
+use study::evaluation::{EvaluationCell, EvaluationPlan};
+use study::store::Shard;
 
 use super::report::ReportArgs;
 use super::work::{self, WorkArgs};

@@ -9,9 +9,8 @@ use std::sync::atomic::Ordering;
 use arena::cases::LibraryHandle;
 use arena::{CaseNames, ROBOTS, Setup};
 use clap::Args;
-use study::evaluation::{
-    Evaluation, EvaluationError, EvaluationPlan, Results, RunProgress, Shard, TrialRow, summary, verdicts,
-};
+use study::evaluation::{Evaluation, EvaluationPlan, Results, TrialRow, summary, verdicts};
+use study::store::{EvaluationError, RunProgress, Shard, StoredExperiment};
 
 use super::report::{self, ReportArgs};
 use crate::Failure;

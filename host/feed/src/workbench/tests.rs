@@ -7,6 +7,8 @@ use std::time::Duration;
 use arena::cases::LibraryHandle;
 use page::MatchProblem;
 
+use study::store::Experiment;
+
 use super::*;
 
 /// A directory that is removed with its value.
@@ -201,7 +203,7 @@ fn tries_of_a_skill_are_counted_as_by_the_command_and_others_are_refused() {
         seed: 7,
         skills: vec![Skill::Kick],
     };
-    let rows = study::skills::rows(&plan, &plan.play().unwrap());
+    let rows = study::skills::rows(&plan, &plan.play_all(&|| ()).unwrap());
     assert_eq!(report["row"], serde_json::to_value(&rows[0]).unwrap());
     assert_eq!(report["failed"].as_array().unwrap().len(), 3 - rows[0].succeeded);
 }

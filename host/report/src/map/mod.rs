@@ -9,7 +9,8 @@ use hil_sim::four_legged::world::{LeggedWorld, WorldEvent};
 use hil_sim::{Layout, NativeBackend, Scenario, SimulationError, TICK_US, TrialOutcome};
 use protocol::robot_io::LeggedKick;
 use rayon::prelude::*;
-use study::evaluation::{Evaluation, EvaluationCell, Shard};
+use study::evaluation::{Evaluation, EvaluationCell};
+use study::store::Shard;
 
 pub(crate) use draw::{CHANCE_PASS_COLOR, LOST_PASS_COLOR, SHADES, html, sheets};
 

@@ -69,7 +69,7 @@ fn panel(cases: &[&CaseUse], never: usize) -> Option<Panel> {
 
 /// Plays that ended with one of these; without any, with an end that has no colour of its own.
 fn ends(case: &CaseUse, names: &[&str]) -> u32 {
-    let all = CycleEnd::DESCRIPTION.iter().zip(case.ends);
+    let all = CycleEnd::LABELS.iter().zip(case.ends);
     let own = all.filter(|(label, _)| match names {
         [] => !ENDS.iter().any(|(_, _, names)| names.contains(*label)),
         names => names.contains(*label),
@@ -109,7 +109,7 @@ mod tests {
             approach: Approach::Cases,
             case: "a/b".to_owned(),
             retrieved: 105,
-            // 1 to 14, in the order of `CycleEnd::DESCRIPTION`.
+            // 1 to 14, in the order of `CycleEnd::LABELS`.
             ends: std::array::from_fn(|i| i as u32 + 1),
             trials: 9,
             outcomes: [0; 5],

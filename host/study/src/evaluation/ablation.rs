@@ -14,14 +14,13 @@ use serde::Serialize;
 
 use super::row::TrialRow;
 use super::tables::rounded;
-use crate::statistics::stars;
-use crate::statistics::{Count, Sample, Test, holm, mcnemar, paired, two_proportions, welch};
+use crate::statistics::{Count, PairedMeans, PairedShares, Test, holm, stars, two_proportions, welch};
 use arena::Setup;
 
 /// One change to the team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Arm {
-    /// Its short name, as `--arm` and the tables have it.
+    /// Short name, as `--arm` and the tables have it.
     pub name: &'static str,
     /// Flags that give the same team in `onetwo trial` and `onetwo evaluate`.
     pub flags: &'static str,
@@ -144,9 +143,9 @@ pub struct Effect {
     pub value: f64,
     /// Value of the arm less that of the unchanged team.
     pub difference: f64,
-    /// Of trials in pairs: McNemar's exact test, or the paired t.
+    /// p of trials in pairs: McNemar's exact test, or the paired t.
     pub p_paired: Option<f64>,
-    /// As if they were independent: z, or Welch's t.
+    /// p as if trials were independent: z, or Welch's t.
     pub p_unpaired: Option<f64>,
     /// `p_paired` corrected over the arms.
     pub p_holm: Option<f64>,
@@ -156,7 +155,7 @@ pub struct Effect {
 enum Look {
     /// Whether it happened; in percent of trials.
     Share(fn(&TrialRow) -> bool),
-    /// How much of it; a mean.
+    /// Amount; a mean over trials.
     Mean(fn(&TrialRow) -> f64),
 }
 
@@ -181,18 +180,27 @@ pub fn effects(default: &[TrialRow], arms: &[(Arm, Vec<TrialRow>)]) -> Vec<Effec
     }
     let mut effects = Vec::new();
     for (arm, rows) in arms {
-        let pairs: Vec<_> = default.iter().zip(rows).filter(|(a, b)| a.trial == b.trial).collect();
+        let pairs = rows.iter().zip(default).filter(|(own, default)| own.trial == default.trial);
         for cell in &cells {
-            let own = |(row, _): &&(&TrialRow, &TrialRow)| {
-                cell.is_none_or(|cell| cell == (row.configuration, row.scenario))
-            };
-            let pairs: Vec<_> = pairs.iter().filter(own).copied().collect();
+            let of_cell = pairs
+                .clone()
+                .filter(|(_, row)| cell.is_none_or(|cell| cell == (row.configuration, row.scenario)));
+            let of_cell: Vec<_> = of_cell.collect();
             effects.extend(MEASURES.iter().filter_map(|(measure, look)| {
-                let mut effect = look.effect(&pairs)?;
-                (effect.arm, effect.measure) = (arm.name, measure);
-                effect.configuration = cell.map(|(configuration, _)| configuration);
-                effect.scenario = cell.map(|(_, scenario)| scenario.label());
-                Some(effect)
+                let difference = look.difference(&of_cell)?;
+                Some(Effect {
+                    arm: arm.name,
+                    configuration: cell.map(|(configuration, _)| configuration),
+                    scenario: cell.map(|(_, scenario)| scenario.label()),
+                    measure,
+                    trials: of_cell.len() as u32,
+                    default: rounded(difference.default),
+                    value: rounded(difference.value),
+                    difference: rounded(difference.value - difference.default),
+                    p_paired: difference.paired.map(|test| test.p),
+                    p_unpaired: difference.unpaired.map(|test| test.p),
+                    p_holm: None,
+                })
             }));
         }
     }
@@ -200,42 +208,47 @@ pub fn effects(default: &[TrialRow], arms: &[(Arm, Vec<TrialRow>)]) -> Vec<Effec
     effects
 }
 
+/// A measure of an arm and of the unchanged team, and the tests of their difference.
+struct MeasuredDifference {
+    default: f64,
+    value: f64,
+    paired: Option<Test>,
+    unpaired: Option<Test>,
+}
+
 impl Look {
-    fn effect(&self, pairs: &[(&TrialRow, &TrialRow)]) -> Option<Effect> {
-        let n = u32::try_from(pairs.len()).ok().filter(|n| *n > 0)?;
-        let (default, value, of_pairs, unpaired) = match self {
+    /// Compares pairs of trials: the arm's, and the unchanged team's.
+    fn difference(&self, pairs: &[(&TrialRow, &TrialRow)]) -> Option<MeasuredDifference> {
+        if pairs.is_empty() {
+            return None;
+        }
+        Some(match self {
             Self::Share(happened) => {
-                let count = |of: &dyn Fn(bool, bool) -> bool| {
-                    pairs.iter().filter(|(a, b)| of(happened(a), happened(b))).count() as u32
-                };
-                let (first, second) = (count(&|a, _| a), count(&|_, b| b));
-                let (only_first, only_second) = (count(&|a, b| a && !b), count(&|a, b| b && !a));
-                let share = |hits| 100.0 * f64::from(hits) / f64::from(n);
-                let unpaired = two_proportions(Count { hits: second, of: n }, Count { hits: first, of: n });
-                (share(first), share(second), mcnemar(only_second, only_first), unpaired)
+                let shares =
+                    PairedShares::of(pairs.iter().map(|(arm, default)| (happened(arm), happened(default))));
+                MeasuredDifference {
+                    default: percent(shares.without),
+                    value: percent(shares.with),
+                    paired: shares.test(),
+                    unpaired: two_proportions(shares.with, shares.without),
+                }
             }
-            Self::Mean(look) => {
-                let first = Sample::of(pairs.iter().map(|(a, _)| look(a)))?;
-                let second = Sample::of(pairs.iter().map(|(_, b)| look(b)))?;
-                let between = Sample::of(pairs.iter().map(|(a, b)| look(b) - look(a)))?;
-                (first.mean, second.mean, paired(between), welch(second, first))
+            Self::Mean(amount) => {
+                let means =
+                    PairedMeans::of(pairs.iter().map(|(arm, default)| (amount(arm), amount(default))))?;
+                MeasuredDifference {
+                    default: means.without.mean,
+                    value: means.with.mean,
+                    paired: means.test(),
+                    unpaired: welch(means.with, means.without),
+                }
             }
-        };
-        let p = |test: Option<Test>| test.map(|test| test.p);
-        Some(Effect {
-            arm: "",
-            configuration: None,
-            scenario: None,
-            measure: "",
-            trials: n,
-            default: rounded(default),
-            value: rounded(value),
-            difference: rounded(value - default),
-            p_paired: p(of_pairs),
-            p_unpaired: p(unpaired),
-            p_holm: None,
         })
     }
+}
+
+fn percent(count: Count) -> f64 {
+    100.0 * f64::from(count.hits) / f64::from(count.of)
 }
 
 /// Fills in [`Effect::p_holm`]: a family is a measure in a cell, over the arms.

@@ -43,7 +43,7 @@ hil_sim::labels! {
 pub struct Comparison {
     /// Number of the paper's table, 1 to 6.
     pub table: u8,
-    /// Which of its trials: the paper's number, or all.
+    /// Sample: as many trials as the paper's, or all.
     pub sample: Extent,
     /// Start positions of the trials.
     pub scenario: Scenario,
@@ -59,7 +59,7 @@ pub struct Comparison {
     pub second: f64,
     /// z or t above 0 where the first is the greater; `None` where a spread is not known.
     pub test: Option<Test>,
-    /// Its p corrected over the scenarios.
+    /// p of the test, corrected over the scenarios.
     pub p_holm: Option<f64>,
 }
 
@@ -71,7 +71,7 @@ pub struct Flat {
     /// `paper` or `large`, as in `tables.json`.
     pub sample: Extent,
     /// 1 to 4, or `random`.
-    #[serde(serialize_with = "arena::scenario")]
+    #[serde(serialize_with = "arena::serialize_scenario")]
     pub scenario: Scenario,
     /// The column of `tables.json`.
     pub measure: &'static str,
@@ -81,7 +81,7 @@ pub struct Flat {
     pub second: &'static str,
     /// Percent, possessions or seconds.
     pub first_value: f64,
-    /// As before, of the second row.
+    /// Value of the second row, in the same unit.
     pub second_value: f64,
     /// First value less the second.
     pub difference: f64,
@@ -96,7 +96,7 @@ pub struct Flat {
 }
 
 impl Comparison {
-    /// As a line of a file; `of_paper` where the second row is the paper's.
+    /// Converts to a line of a file; `of_paper` where the second row is the paper's.
     pub fn flat(&self, of_paper: bool) -> Flat {
         let test = if self.measure.is_share() { "z" } else { "t" };
         Flat {
@@ -118,7 +118,7 @@ impl Comparison {
 }
 
 impl Measure {
-    /// Its value in a row, where it was measured.
+    /// Value in a row, where it was measured.
     pub fn value(self, row: &TableRow) -> Option<f64> {
         match self {
             Self::Goal => row.goal,

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use hil_sim::{Fnv, Parameters};
 use serde::{Deserialize, Serialize};
 
-use super::difference::Difference;
 use super::plan::EvaluationPlan;
+use crate::store::Difference;
 
 /// Identity of the evaluation of a file: all settings that its trials depend on. Only equals are resumed or
 /// merged.
@@ -18,7 +18,7 @@ pub struct Identity {
     pub library: String,
     /// Hash of the case base, 8 hexadecimal digits.
     pub case_base: String,
-    /// Its authored cases by name, in the order of ids.
+    /// Authored cases of the library by name, in the order of ids.
     pub cases: Vec<String>,
     /// Whether cases are mirrored.
     pub symmetry: bool,
@@ -26,9 +26,9 @@ pub struct Identity {
     pub case_opponents: bool,
     /// The named settings of retrieval, name and value.
     pub settings: BTreeMap<String, String>,
-    /// When a case's actions start: `dependent` or `independent`.
+    /// Start of a case's actions: `dependent` or `independent`.
     pub positioning: String,
-    /// How many of the two robots may retrieve.
+    /// Number of the two robots that may retrieve.
     pub retrievers: usize,
     /// Share of packets that a receiver does not get.
     pub loss: f32,
@@ -111,10 +111,10 @@ fn hash_of<T: Serialize + ?Sized>(value: &T) -> String {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::evaluation::in_words;
+    use crate::store::in_words;
 
     /// The identity of an evaluation, for tests.
-    pub(in super::super) fn identity() -> Identity {
+    pub(crate) fn identity() -> Identity {
         Identity {
             program: "test".to_owned(),
             library: "four-legged".to_owned(),
@@ -162,7 +162,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn another_world_is_told_apart_by_its_hash() {
+    fn another_world_has_another_hash() {
         let (own, mut heavier) = (identity(), identity());
         heavier.parameters.ball.deceleration += 0.01;
         let differences = between(&own, &heavier);

@@ -19,7 +19,7 @@ use arena::{APPROACHES, approach_label};
 /// A line with its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JudgementLine {
-    /// Its short name, such as `a`.
+    /// Short name, such as `a`.
     pub id: &'static str,
     /// The expected result, one sentence.
     pub line: &'static str,
@@ -68,7 +68,7 @@ const LINES: &[Entry] = &[
     ("b", "to goal: more with cases in scenarios 3 and 4, p < 0.01", |r| {
         let cells = [1, 4].into_iter().flat_map(|table| [(table, DefenderAhead), (table, DefenderClose)]);
         let found = compare(r, cells, Measure::ToGoal, [Cases, Reactive])?;
-        Some((found.iter().all(|cell| cell.difference > 0.0 && cell.p < SURE), evidence_text(&found)))
+        Some((found.iter().all(|cell| cell.difference > 0.0 && cell.p < P_MAX), evidence_text(&found)))
     }),
     ("c", "possession: less against cases in all 8 cells (defender; of two, the midfield defender)", |r| {
         let dg = compare(r, Scenario::PAPER.map(|s| (1, s)), Measure::Possession, [Cases, Reactive])?;
@@ -114,7 +114,7 @@ const LINES: &[Entry] = &[
     }),
     ("to-goal", "to goal: more with cases, p < 0.01, in at least 6 of 8 cells", |r| {
         let found = compare(r, cells(), Measure::ToGoal, [Cases, Reactive])?;
-        let sure = found.iter().filter(|cell| cell.difference > 0.0 && cell.p < SURE).count();
+        let sure = found.iter().filter(|cell| cell.difference > 0.0 && cell.p < P_MAX).count();
         Some((sure >= 6, format!("{sure} of 8; {}", evidence_text(&found))))
     }),
     ("out", "out: fewer with cases in all 8 cells", out),
@@ -143,8 +143,8 @@ const LINES: &[Entry] = &[
             let order = [Cases, Reactive];
             let goal = compare(r, [(1, Random), (4, Random)], Measure::ToGoal, order)?;
             let out = compare(r, [(1, Random), (4, Random)], Measure::Out, order)?;
-            let holds = goal.iter().all(|cell| cell.difference > 0.0 && cell.p < SURE)
-                && out.iter().all(|cell| cell.difference < 0.0 && cell.p < SURE);
+            let holds = goal.iter().all(|cell| cell.difference > 0.0 && cell.p < P_MAX)
+                && out.iter().all(|cell| cell.difference < 0.0 && cell.p < P_MAX);
             Some((holds, format!("to goal {}; out {}", evidence_text(&goal), evidence_text(&out))))
         },
     ),
@@ -230,7 +230,7 @@ fn numbers(values: &[f64], decimals: usize) -> String {
 }
 
 /// p below which a difference counts as significant.
-const SURE: f64 = 0.01;
+const P_MAX: f64 = 0.01;
 
 #[cfg(test)]
 mod tests {

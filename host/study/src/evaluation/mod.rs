@@ -2,8 +2,8 @@
 //! Tables 1 to 6 (§5).
 //!
 //! ```text
-//! Plan ─► Evaluation::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► tables ─► compare ─ Wilson, z, Welch, Holm
-//!                                                                     paper::rows ──────┘
+//! plan ─► play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► tables ─► compare ─ Wilson, z, Welch, Holm
+//!                                                        paper::rows ──────┘
 //! ```
 //! A [`EvaluationPlan`] numbers the trials; shards of it are played anywhere, and merged rows are the same
 //! bytes for any number of threads, shards and interrupts. [`tables`] makes docs/case-format.md §5.2's
@@ -12,11 +12,9 @@
 mod ablation;
 mod claims;
 mod comparison;
-mod description;
-mod difference;
-mod error;
 mod identity;
 mod judge;
+mod labels;
 mod paper;
 mod plan;
 mod results;
@@ -24,25 +22,24 @@ mod row;
 mod runs;
 mod summary;
 mod tables;
-mod trial_store;
 mod uses;
 mod verdicts;
 
 pub use ablation::{ARMS, Arm, Effect, ablation_table, effects};
 pub use claims::{Claim, ClaimPoint, ClaimVerdict, Judgement, Standing, claims};
 pub use comparison::{Comparison, Flat, Measure, compare, with_paper};
-pub use difference::{Difference, in_words};
-pub use error::{EvaluationError, LackingShard};
 pub use identity::Identity;
+#[cfg(test)]
+pub(crate) use identity::tests::identity as identity_for_tests;
 pub use judge::{Held, JudgementLine, judge};
 pub use paper::paper;
-pub use plan::{EvaluationCell, EvaluationPlan, Planned, Shard};
+pub use plan::{EvaluationCell, EvaluationPlan, Planned};
 pub use results::{Results, write_effects};
-pub use row::{TrialRow, csv_hash, to_csv};
-pub(crate) use runs::play_open;
-pub use runs::{Evaluation, RunProgress, merge};
+pub use row::TrialRow;
+#[cfg(test)]
+pub(crate) use row::tests::row as row_for_tests;
+pub use runs::Evaluation;
 pub use summary::summary;
 pub use tables::{Extent, TableRow, tables};
-pub use trial_store::{Entry, Kept, read};
 pub use uses::{CaseUse, OUTCOMES, uses, uses_to_csv};
 pub use verdicts::verdicts;

@@ -87,7 +87,7 @@ fn fill(row: &mut TableRow, line: &Line) {
     }
 }
 
-/// A row of Table 1.
+/// Trials of each row of Table 1.
 const TRIALS_OF_TABLE_1: u32 = 500;
 const FILES: [(u8, &str); 6] = [
     (1, include_str!("../../data/ros_table1_dg_simulation.csv")),

@@ -5,13 +5,12 @@
 //! same random numbers. A seed is enough to play a trial again alone: `onetwo trial --scenario S --opponents
 //! O --approach A --seed N`.
 
-use std::fmt;
-
 use brain::Approach;
 use hil_sim::{Configuration, Fnv, Scenario};
 use serde::{Deserialize, Serialize};
 
-use super::description;
+use super::labels;
+use crate::store::Shard;
 use arena::{APPROACHES, Profile};
 
 /// Trials that differ only in their seed.
@@ -22,10 +21,10 @@ pub struct EvaluationCell {
     /// The opponents: defender and goalie, or two defenders.
     pub configuration: Configuration,
     /// Start positions of ball and robots.
-    #[serde(with = "description::scenario")]
+    #[serde(with = "labels::scenario")]
     pub scenario: Scenario,
     /// Approach of the attackers.
-    #[serde(with = "description::approach")]
+    #[serde(with = "labels::approach")]
     pub approach: Approach,
     /// Number of trials in the cell.
     pub trials: u32,
@@ -43,11 +42,11 @@ pub struct EvaluationPlan {
 /// A trial of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Planned {
-    /// Its number in the plan, from 0.
+    /// Number in the plan, from 0.
     pub number: usize,
     /// The cell to which it belongs.
     pub cell: EvaluationCell,
-    /// Its own seed; the same for the k-th trial of every approach.
+    /// Seed of the trial; the same for the k-th trial of every approach.
     pub seed: u64,
 }
 
@@ -87,7 +86,7 @@ impl EvaluationPlan {
         }
     }
 
-    /// With random starts in this world after the other cells, as many trials as their configuration's there.
+    /// Adds random starts in this world after the other cells, as many trials as their configuration's there.
     pub fn with_random(mut self, profile: Profile) -> Self {
         for configuration in [Configuration::DefenderGoalie, Configuration::TwoDefenders] {
             let alike =
@@ -150,61 +149,6 @@ impl EvaluationPlan {
         hash.add(&trial.to_le_bytes());
         let value = hash.value();
         (value ^ (value >> SEED_BITS)) & ((1 << SEED_BITS) - 1)
-    }
-}
-
-/// A part of a plan: every n-th trial, so that all parts take about the same time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
-    index: usize,
-    of: usize,
-}
-
-impl Shard {
-    /// The whole plan as one part.
-    pub const WHOLE: Self = Self { index: 1, of: 1 };
-
-    /// The part `index`, from 1, of `of` parts.
-    pub fn new(index: usize, of: usize) -> Option<Self> {
-        (1..=of).contains(&index).then_some(Self { index, of })
-    }
-
-    /// Parses the form `2/3`.
-    pub fn from_label(label: &str) -> Option<Self> {
-        let (index, of) = label.split_once('/')?;
-        Self::new(index.parse().ok()?, of.parse().ok()?)
-    }
-
-    /// Whether the trial of this number belongs to it.
-    pub fn has(self, number: usize) -> bool {
-        number % self.of == self.index - 1
-    }
-
-    /// The part whose file has this name.
-    pub fn from_file_name(name: &str) -> Option<Self> {
-        let (index, of) = name.strip_prefix("trials-")?.strip_suffix(".csv")?.split_once("-of-")?;
-        Self::new(index.parse().ok()?, of.parse().ok()?)
-    }
-
-    /// Its place among the parts of its plan, from 0.
-    pub fn index(self) -> usize {
-        self.index - 1
-    }
-
-    /// Number of parts of its plan.
-    pub fn parts(self) -> usize {
-        self.of
-    }
-
-    /// The name of its file.
-    pub fn file_name(self) -> String {
-        format!("trials-{}-of-{}.csv", self.index, self.of)
-    }
-}
-
-impl fmt::Display for Shard {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{}", self.index, self.of)
     }
 }
 
@@ -273,11 +217,5 @@ mod tests {
             .collect();
         all.sort_unstable();
         assert_eq!(all, (0..plan.len()).collect::<Vec<_>>());
-        assert_eq!(Shard::from_label("2/3"), Shard::new(2, 3));
-        assert_eq!(Shard::from_file_name(&Shard::new(2, 3).unwrap().file_name()), Shard::new(2, 3));
-        assert_eq!(Shard::from_file_name("trials.csv"), None);
-        for label in ["0/3", "4/3", "1/0", "1", "a/b", ""] {
-            assert_eq!(Shard::from_label(label), None, "{label}");
-        }
     }
 }

@@ -19,13 +19,13 @@ use serde::Serialize;
 use super::ablation::Effect;
 use super::claims::{Claim, claims};
 use super::comparison::{Comparison, compare, with_paper};
-use super::error::EvaluationError;
 use super::identity::Identity;
 use super::judge::{JudgementLine, judge};
 use super::paper::paper;
-use super::row::{TrialRow, csv_hash, to_csv};
+use super::row::TrialRow;
 use super::tables::{TableRow, tables};
 use super::uses::{CaseUse, uses, uses_to_csv};
+use crate::store::{EvaluationError, csv_hash, to_csv};
 use arena::APPROACHES;
 
 /// An evaluation that was played to its end.
@@ -33,7 +33,7 @@ use arena::APPROACHES;
 pub struct Results {
     /// Identity of the evaluation: everything that its trials depend on.
     pub identity: Identity,
-    /// Its trials, in the plan's order.
+    /// Trials, in the plan's order.
     pub rows: Vec<TrialRow>,
     /// Rows of the paper's tables, computed from our trials.
     pub tables: Vec<TableRow>,

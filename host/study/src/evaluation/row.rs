@@ -4,11 +4,13 @@
 //! processes.
 
 use brain::Approach;
-use hil_sim::{Configuration, Fnv, Scenario, TrialOutcome};
+use hil_sim::{Configuration, Scenario, TrialOutcome};
 use serde::{Deserialize, Serialize};
 
-use super::description;
+use super::identity::Identity;
+use super::labels;
 use super::plan::Planned;
+use crate::store::{Difference, Row};
 use arena::DefaultReport;
 use arena::Profile;
 use arena::{CycleReport, TrialReport};
@@ -16,31 +18,31 @@ use arena::{CycleReport, TrialReport};
 /// Identity and measures of one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrialRow {
-    /// Its number in the plan, from 0.
+    /// Number in the plan, from 0.
     pub trial: usize,
     /// World of the trial: `simulated` or `robots`.
     pub profile: Profile,
     /// Opponents of the trial: `dg` or `2d`.
     pub configuration: Configuration,
     /// 1 to 4, or `random`.
-    #[serde(with = "description::scenario")]
+    #[serde(with = "labels::scenario")]
     pub scenario: Scenario,
     /// Approach of the attackers: `cbr` or `reactive`.
-    #[serde(with = "description::approach")]
+    #[serde(with = "labels::approach")]
     pub approach: Approach,
     /// Seed that replays it.
     pub seed: u64,
-    /// How it ended; against two defenders `goal` is the paper's "to goal".
+    /// End of the trial; against two defenders `goal` is the paper's "to goal".
     pub outcome: TrialOutcome,
     /// Seconds from kick-off to its end.
     pub time_s: f64,
-    /// How often the defender had the ball.
+    /// Times that the defender had the ball.
     pub possession_defender: u32,
-    /// How often the midfield defender had it.
+    /// Times that the midfield defender had it.
     pub possession_midfield: u32,
-    /// How often robot A backed up.
+    /// Times that robot A backed up.
     pub backups_a: u32,
-    /// How often robot B did.
+    /// Times that robot B backed up.
     pub backups_b: u32,
     /// The robot that put the ball out; empty for every other outcome.
     pub out_by: Option<String>,
@@ -56,31 +58,31 @@ pub struct TrialRow {
     pub default_spells: Option<u32>,
     /// Retrievals that failed because the ball lay in no scope.
     pub no_case_ball: Option<u32>,
-    /// Because there were too few robots.
+    /// Retrievals that failed because there were too few robots.
     pub no_case_robots: Option<u32>,
-    /// Because a robot had too far to go.
+    /// Retrievals that failed because a robot had too far to go.
     pub no_case_thr_c: Option<u32>,
-    /// Because an opponent stood in the path.
+    /// Retrievals that failed because an opponent stood in the path.
     pub no_case_path: Option<u32>,
-    /// Because the case could not start.
+    /// Retrievals that failed because the case could not start.
     pub no_case_held: Option<u32>,
     /// Equal for equal trials.
     pub trace_hash: String,
     /// The cases played, in order: `region/name:how-it-ended`, a blank between two.
     pub plays: String,
-    /// Seconds in which all robots stood still after a cycle; the next six are seconds too.
+    /// Seconds in which all robots stood still after a cycle.
     pub pause_s: f64,
-    /// In which a robot of each team was within reach of a ball that did not get away.
+    /// Seconds in which a robot of each team was within reach of a ball that did not get away.
     pub duel_s: f64,
-    /// In which an attacker held the ball, without an opponent within reach.
+    /// Seconds in which an attacker held the ball, without an opponent within reach.
     pub held_s: f64,
-    /// In which an opponent held it, without an attacker within reach.
+    /// Seconds in which an opponent held it, without an attacker within reach.
     pub theirs_s: f64,
-    /// In which it rolled.
+    /// Seconds in which it rolled.
     pub rolls_s: f64,
-    /// In which it rested within an attacker's reach.
+    /// Seconds in which it rested within an attacker's reach.
     pub at_ball_s: f64,
-    /// In which it rested out of the attackers' reach.
+    /// Seconds in which it rested out of the attackers' reach.
     pub walk_s: f64,
 }
 
@@ -140,33 +142,27 @@ impl TrialRow {
     }
 }
 
+impl Row for TrialRow {
+    type Identity = Identity;
+    const MARK: &'static str = "# onetwo trials 1 ";
+    fn number(&self) -> usize {
+        self.trial
+    }
+    fn is_planned(&self, identity: &Identity) -> bool {
+        identity.plan.get(self.trial).is_some_and(|planned| self.is_of(&planned))
+    }
+    fn planned(identity: &Identity) -> usize {
+        identity.plan.len()
+    }
+    fn differences(own: &Identity, other: &Identity) -> Vec<Difference> {
+        own.differences(other)
+    }
+}
+
 /// Case and end of every cycle that had a case.
 fn plays(cycles: &[CycleReport]) -> String {
     let played = cycles.iter().filter_map(|cycle| Some(format!("{}:{}", cycle.case.as_deref()?, cycle.end)));
     played.collect::<Vec<_>>().join(" ")
-}
-
-/// Rows as `trials.csv`, with their columns' names in the first line.
-pub fn to_csv<R: Serialize>(rows: &[R]) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row)?;
-    }
-    writer.into_inner().map_err(|error| error.into_error().into())
-}
-
-/// One row without the columns' names, its end of line included.
-pub(super) fn to_line<R: Serialize>(row: &R) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    writer.serialize(row)?;
-    writer.into_inner().map_err(|error| error.into_error().into())
-}
-
-/// The number that identifies an evaluation: FNV-1a-64 of its `trials.csv`, 16 hexadecimal digits.
-pub fn csv_hash(csv: &[u8]) -> String {
-    let mut hash = Fnv::default();
-    hash.add(csv);
-    hash.to_string()
 }
 
 #[cfg(test)]
@@ -174,7 +170,7 @@ pub(super) mod tests {
     use super::*;
 
     /// A trial of case-based attackers, for tests.
-    pub(in super::super) fn row() -> TrialRow {
+    pub(crate) fn row() -> TrialRow {
         TrialRow {
             trial: 0,
             profile: Profile::Simulated,

@@ -13,13 +13,13 @@ use hil_sim::{Configuration, Scenario, TrialOutcome};
 use serde::{Serialize, Serializer};
 
 use super::comparison::Measure;
-use super::description;
+use super::labels;
 use super::row::TrialRow;
 use crate::statistics::{Interval, Sample, wilson};
 use arena::Profile;
 
 hil_sim::labels! {
-    /// Which of the trials a row is of.
+    /// Sample that a row is of.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Extent {
@@ -39,10 +39,10 @@ pub struct TableRow {
     /// Opponents of the trials: `dg` or `2d`.
     pub configuration: Configuration,
     /// 1 to 4, or `random`.
-    #[serde(serialize_with = "arena::scenario")]
+    #[serde(serialize_with = "arena::serialize_scenario")]
     pub scenario: Scenario,
     /// Approach of the attackers: `cbr` or `reactive`.
-    #[serde(serialize_with = "description::approach::serialize")]
+    #[serde(serialize_with = "labels::approach::serialize")]
     pub approach: Approach,
     /// Number of trials in the row.
     pub trials: u32,
@@ -88,9 +88,9 @@ pub struct TableRow {
     pub default_time: Option<f64>,
     /// Number of spells a trial.
     pub default_spells: Option<f64>,
-    /// Why retrievals failed, a trial: the ball lay in no scope.
+    /// Failed retrievals a trial: the ball lay in no scope.
     pub none_ball: Option<f64>,
-    /// There were too few robots for any case.
+    /// Failed retrievals a trial: too few robots for any case.
     pub none_robots: Option<f64>,
     /// A robot had too far to go.
     pub none_thr_c: Option<f64>,
@@ -140,11 +140,11 @@ pub struct TableRow {
     pub held_time: Option<f64>,
     /// An opponent holds it, without an attacker within reach.
     pub theirs_time: Option<f64>,
-    /// It rolls.
+    /// Share of the time in which the ball rolls.
     pub rolls_time: Option<f64>,
-    /// It rests within an attacker's reach.
+    /// Share in which it rests within an attacker's reach.
     pub at_ball_time: Option<f64>,
-    /// It rests out of the attackers' reach.
+    /// Share in which it rests out of the attackers' reach.
     pub walk_time: Option<f64>,
     /// All robots stand still after a cycle.
     pub pause_time: Option<f64>,
@@ -342,8 +342,11 @@ impl TableRow {
 
     fn fill_activities(&mut self, rows: &[&TrialRow]) {
         let time: f64 = rows.iter().map(|row| row.time_s).sum();
+        if time <= 0.0 {
+            return;
+        }
         let share = |of: fn(&TrialRow) -> f64| {
-            (time > 0.0).then(|| rounded(100.0 * rows.iter().map(|row| of(row)).sum::<f64>() / time))
+            Some(rounded(100.0 * rows.iter().map(|row| of(row)).sum::<f64>() / time))
         };
         self.duel_time = share(|row| row.duel_s);
         self.held_time = share(|row| row.held_s);
@@ -384,7 +387,7 @@ impl Mean {
     }
 }
 
-/// To a ten-thousandth: finer than the resolution of any number of trials, and short to read.
+/// Rounds to a ten-thousandth: finer than the resolution of any number of trials, and short to read.
 pub(super) fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }

@@ -25,8 +25,8 @@ pub struct CaseUse {
     pub case: String,
     /// Number of times it was played.
     pub retrieved: u32,
-    /// Counts of the ends of these plays, in the order of [`CycleEnd::DESCRIPTION`].
-    pub ends: [u32; CycleEnd::DESCRIPTION.len()],
+    /// Counts of the ends of these plays, in the order of [`CycleEnd::LABELS`].
+    pub ends: [u32; CycleEnd::LABELS.len()],
     /// Trials in which it was played.
     pub trials: u32,
     /// Counts of the outcomes, in the order of [`OUTCOMES`].
@@ -68,13 +68,13 @@ pub fn uses(rows: &[TrialRow], cases: &[String]) -> Vec<CaseUse> {
 impl CaseUse {
     fn new((profile, configuration, approach): (Profile, Configuration, Approach), case: &str) -> Self {
         let case = case.to_owned();
-        let (ends, outcomes) = ([0; CycleEnd::DESCRIPTION.len()], [0; OUTCOMES.len()]);
+        let (ends, outcomes) = ([0; CycleEnd::LABELS.len()], [0; OUTCOMES.len()]);
         Self { profile, configuration, approach, case, retrieved: 0, ends, trials: 0, outcomes }
     }
 
     fn count(&mut self, end: &str) {
         self.retrieved += 1;
-        let ends = CycleEnd::DESCRIPTION.iter().zip(&mut self.ends);
+        let ends = CycleEnd::LABELS.iter().zip(&mut self.ends);
         ends.filter(|(label, _)| **label == end).for_each(|(_, count)| *count += 1);
     }
 
@@ -90,7 +90,7 @@ pub fn uses_to_csv(uses: &[CaseUse]) -> Result<Vec<u8>, csv::Error> {
     let columns = ["profile", "configuration", "approach", "case", "retrieved"].into_iter();
     let outcomes = OUTCOMES.iter().map(|outcome| outcome.label());
     let outcomes = outcomes.map(|outcome| format!("trials_{outcome}"));
-    let header = columns.chain(CycleEnd::DESCRIPTION).chain(["trials"]).map(str::to_owned).chain(outcomes);
+    let header = columns.chain(CycleEnd::LABELS).chain(["trials"]).map(str::to_owned).chain(outcomes);
     writer.write_record(header)?;
     for case in uses {
         let CaseUse { profile, configuration, approach, case, retrieved, ends, trials, outcomes } = case;
@@ -134,10 +134,10 @@ mod tests {
     }
 
     #[test]
-    fn every_end_has_its_word_in_the_list() {
+    fn every_end_is_counted_by_its_label() {
         let reactive = TrialRow { approach: Approach::Reactive, plays: "a/x:finished".to_owned(), ..row() };
         assert!(uses(&[reactive], &["a/x".to_owned()]).is_empty());
-        for label in CycleEnd::DESCRIPTION {
+        for label in CycleEnd::LABELS {
             let row = TrialRow { plays: format!("a/x:{label}"), ..row() };
             assert_eq!(uses(&[row], &["a/x".to_owned()])[0].ends.iter().sum::<u32>(), 1, "{label}");
         }

@@ -13,7 +13,7 @@ use crate::learning::edit::Edit;
 use crate::learning::occasion::Occasion;
 use crate::learning::variant::{Answer, Variant};
 
-/// What situations are drawn for; no two purposes draw the same.
+/// Purpose of drawn situations; no two purposes draw the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// The search for new cases.
@@ -87,15 +87,15 @@ fn moved(played: &[&Occasion], chance: &mut Stream) -> Option<Occasion> {
     let (before, with_ball) = (situation.ball, shift());
     situation.ball = plus(before, with_ball);
     for (_, at) in &mut situation.teammates {
-        *at = plus(*at, if distance(*at, before) < HOLDS { with_ball } else { shift() });
+        *at = plus(*at, if distance(*at, before) < HOLDS_WITHIN_MM { with_ball } else { shift() });
     }
     for at in &mut situation.opponents {
-        *at = plus(*at, if distance(*at, before) < HOLDS { with_ball } else { shift() });
+        *at = plus(*at, if distance(*at, before) < HOLDS_WITHIN_MM { with_ball } else { shift() });
     }
     let robots: Vec<[i32; 2]> =
         situation.teammates.iter().map(|(_, at)| *at).chain(situation.opponents.iter().copied()).collect();
     let inside = robots.iter().all(|[x, y]| x.abs() <= ROBOT_INSIDE[0] && y.abs() <= ROBOT_INSIDE[1]);
-    let apart = (0..robots.len()).all(|i| (0..i).all(|j| distance(robots[i], robots[j]) >= APART));
+    let apart = (0..robots.len()).all(|i| (0..i).all(|j| distance(robots[i], robots[j]) >= ROBOTS_APART_MM));
     (situation.is_usable() && inside && apart).then_some(occasion)
 }
 
@@ -107,10 +107,10 @@ pub(crate) fn distance([a, b]: [i32; 2], [x, y]: [i32; 2]) -> f64 {
 /// Standard deviation of a move, mm: a robot's length, well below the radii of scopes.
 const SPREAD: f32 = 150.0;
 /// A robot whose centre is closer to the ball has it, mm.
-const HOLDS: f64 = 250.0;
+const HOLDS_WITHIN_MM: f64 = 250.0;
 /// Least distance of two robots' centres, mm: the width of a robot.
-const APART: f64 = 300.0;
-/// Where a robot may stand, mm: on the lines.
+const ROBOTS_APART_MM: f64 = 300.0;
+/// Limits of a robot's centre along x and y, mm: on the lines.
 const ROBOT_INSIDE: [i32; 2] = [2700, 1800];
 
 #[cfg(test)]

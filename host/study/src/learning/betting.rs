@@ -24,14 +24,42 @@ pub struct Wager {
     pub lowered: u32,
     /// All pairs, equal ones included.
     pub pairs: u32,
-    /// Differences of the pairs, summed, and their squares.
-    sum: f64,
+    /// Differences of the pairs.
+    #[serde(flatten)]
+    differences: PairedDifference,
+}
+
+/// The difference of a value between the two sides of pairs: with a change less without it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PairedDifference {
+    /// Sum over the pairs.
+    pub sum: f64,
+    /// Sum of squares.
     squares: f64,
+}
+
+impl PairedDifference {
+    /// Adds a pair by its difference.
+    pub(crate) fn add(&mut self, difference: f64) {
+        self.sum += difference;
+        self.squares += difference * difference;
+    }
+
+    /// The sum in standard deviations of chance, which gives each difference either sign.
+    pub fn z(&self) -> f64 {
+        if self.squares == 0.0 { 0.0 } else { self.sum / self.squares.sqrt() }
+    }
 }
 
 impl Default for Wager {
     fn default() -> Self {
-        Self { capital: [1.0; STAKES.len()], raised: 0, lowered: 0, pairs: 0, sum: 0.0, squares: 0.0 }
+        Self {
+            capital: [1.0; STAKES.len()],
+            raised: 0,
+            lowered: 0,
+            pairs: 0,
+            differences: PairedDifference::default(),
+        }
     }
 }
 
@@ -49,8 +77,7 @@ impl Wager {
         self.pairs += 1;
         self.raised += u32::from(difference > 0.0);
         self.lowered += u32::from(difference < 0.0);
-        self.sum += difference;
-        self.squares += difference * difference;
+        self.differences.add(difference);
         for (capital, stake) in self.capital.iter_mut().zip(STAKES) {
             *capital *= 1.0 + stake * difference / most;
         }
@@ -69,8 +96,8 @@ impl Wager {
         self.raised += other.raised;
         self.lowered += other.lowered;
         self.pairs += other.pairs;
-        self.sum += other.sum;
-        self.squares += other.squares;
+        self.differences.sum += other.differences.sum;
+        self.differences.squares += other.differences.squares;
     }
 
     /// The e-value: the bettor's capital, 1 at the start.
@@ -81,17 +108,17 @@ impl Wager {
     /// Estimated gain: points of to-goal, percent of all starts; of values, hundred times their mean
     /// difference.
     pub fn gain(&self) -> f64 {
-        if self.pairs == 0 { 0.0 } else { 100.0 * self.sum / f64::from(self.pairs) }
+        if self.pairs == 0 { 0.0 } else { 100.0 * self.differences.sum / f64::from(self.pairs) }
     }
 
     /// The difference in standard deviations of chance.
     pub fn z(&self) -> f64 {
-        if self.squares == 0.0 { 0.0 } else { self.sum / self.squares.sqrt() }
+        self.differences.z()
     }
 
-    /// The mean difference less a standard error of chance, in hundredths.
-    pub(crate) fn cautious_gain(&self) -> f64 {
-        100.0 * (self.sum - self.squares.sqrt()) / f64::from(self.pairs.max(1))
+    /// The mean difference, this many standard errors of chance higher.
+    pub(crate) fn bounded_gain(&self, errors: f64) -> f64 {
+        (self.differences.sum + errors * self.differences.squares.sqrt()) / f64::from(self.pairs.max(1))
     }
 }
 

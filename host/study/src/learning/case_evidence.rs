@@ -5,74 +5,75 @@ use std::collections::{BTreeMap, BTreeSet};
 use case_tools::Files;
 use serde::{Deserialize, Serialize};
 
+use crate::learning::diff::text_of;
 use crate::learning::edit::{Change, Edit};
 use crate::learning::evidence::{Evidence, ScopeRing};
 use crate::learning::variant::Variant;
 
 /// Plays, and those of them in trials that ended with the ball in or close to the goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Told {
+pub struct PlayCounts {
     /// Plays.
     pub plays: u64,
-    /// Of these, to goal.
+    /// Plays of these to goal.
     pub to_goal: u64,
 }
 
-impl Told {
+impl PlayCounts {
     fn add(&mut self, plays: u64, to_goal: u64) {
         self.plays += plays;
         self.to_goal += to_goal;
     }
 }
 
-/// Where a case works and where it fails.
+/// Successes and failures of a case, by where it was played.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CaseEvidence {
     /// All plays, in this library and in those before it that were learned from.
-    pub all: Told,
+    pub all: PlayCounts,
     /// Plays in the library as it is now.
-    pub now: Told,
-    /// With the ball in the inner half of the scope, and in the outer half.
-    pub rings: [Told; 2],
-    /// By symmetry of the stored case.
-    pub symmetries: [Told; 4],
-    /// With an opponent in each of the case's scopes, and without one in some.
-    pub opponents: [Told; 2],
-    /// By area of the ball in the direction of attack: six strips along the field, each the middle and then
-    /// the wings.
-    pub areas: [Told; 12],
-    /// All plays of any case or none in these areas: what is usual there.
-    pub usual: [Told; 12],
+    pub now: PlayCounts,
+    /// Plays with the ball in the inner half of the scope, and in the outer half.
+    pub rings: [PlayCounts; 2],
+    /// Plays by symmetry of the stored case.
+    pub symmetries: [PlayCounts; 4],
+    /// Plays with an opponent in each of the case's scopes, and without one in some.
+    pub opponents: [PlayCounts; 2],
+    /// Plays by area of the ball in the direction of attack: six strips along the field, each the middle and
+    /// then the wings.
+    pub areas: [PlayCounts; 12],
+    /// All plays of any case or none in these areas: the rate that the case is compared with.
+    pub usual: [PlayCounts; 12],
     /// Plays by their ends.
     pub ends: BTreeMap<String, u64>,
 }
 
 impl CaseEvidence {
-    /// What is known of `case`; `library` is what is played now.
+    /// Sums the evidence of `case`; `library` is what is played now.
     pub fn of(evidence: &Evidence, library: &Variant, case: &str) -> Self {
         let now = format!("{:016x}", library.hash);
-        let mut told = Self::default();
+        let mut sums = Self::default();
         for (key, counts) in &evidence.0 {
             let (plays, to_goal) = (counts.plays, counts.to_goal);
             let area = usize::from(key.area).min(11);
-            told.usual[area].add(plays, to_goal);
+            sums.usual[area].add(plays, to_goal);
             if key.case != case {
                 continue;
             }
-            told.all.add(plays, to_goal);
-            told.areas[area].add(plays, to_goal);
+            sums.all.add(plays, to_goal);
+            sums.areas[area].add(plays, to_goal);
             if key.library == now {
-                told.now.add(plays, to_goal);
+                sums.now.add(plays, to_goal);
             }
-            told.rings[usize::from(key.ring == ScopeRing::Risk)].add(plays, to_goal);
-            told.symmetries[usize::from(key.symmetry).min(3)].add(plays, to_goal);
+            sums.rings[usize::from(key.ring == ScopeRing::Risk)].add(plays, to_goal);
+            sums.symmetries[usize::from(key.symmetry).min(3)].add(plays, to_goal);
             let met = key.pattern.split_once('/').is_some_and(|(held, of)| held == of);
-            told.opponents[usize::from(!met)].add(plays, to_goal);
+            sums.opponents[usize::from(!met)].add(plays, to_goal);
             for (end, count) in &counts.ends {
-                *told.ends.entry(end.clone()).or_default() += count;
+                *sums.ends.entry(end.clone()).or_default() += count;
             }
         }
-        told
+        sums
     }
 }
 
@@ -81,9 +82,9 @@ impl CaseEvidence {
 pub struct ProposalNote {
     /// The change in words.
     pub words: String,
-    /// Why it was tried.
+    /// Reason for the try.
     pub reason: String,
-    /// What became of it, as in the report.
+    /// Verdict, as in the report.
     pub verdict: String,
     /// Pairs of its trials, and those that it raised and lowered.
     pub pairs: u64,
@@ -91,7 +92,7 @@ pub struct ProposalNote {
     pub raised: u64,
     /// Pairs that it lowered.
     pub lowered: u64,
-    /// Its gain in the situations that it changes, points.
+    /// Gain in the situations that it changes, points.
     pub gain: f64,
     /// Whether an author has refused it.
     pub refused: bool,
@@ -130,11 +131,8 @@ pub fn proposals_in(
     });
     let mut notes: Vec<ProposalNote> = own
         .map(|Reported { edit, text, reason, verdict, pairs, raised, lowered, gain }| {
-            let text_of = |files: &Files| {
-                files.cases.iter().find(|file| file.name == case).map(|file| file.text.clone())
-            };
-            let after = edit.apply(files).ok().and_then(|after| text_of(&after));
-            let after = after.filter(|after| Some(after) != text_of(files).as_ref());
+            let after = edit.apply(files).ok().and_then(|after| text_of(&after, case).map(str::to_owned));
+            let after = after.filter(|after| Some(after.as_str()) != text_of(files, case));
             let refused = refused.contains(&edit);
             ProposalNote { words: text, reason, verdict, pairs, raised, lowered, gain, refused, after }
         })
@@ -161,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_case_is_told_by_ring_area_and_library_beside_what_is_usual() {
+    fn plays_of_a_case_are_summed_by_ring_area_and_library() {
         let variant = Variant::new(files()).unwrap();
         let record = |library: u64, case: &str, ring, area, plays, to_goal| {
             let key = EvidenceKey {
@@ -182,13 +180,13 @@ mod tests {
             record(1, "a/b", ScopeRing::Risk, 3, 5, 1),
             record(1, "a/c", ScopeRing::Risk, 3, 85, 33),
         ]));
-        let told = CaseEvidence::of(&evidence, &variant, "a/b");
-        let counts = |plays, to_goal| Told { plays, to_goal };
-        assert_eq!((told.all, told.now), (counts(15, 7), counts(10, 6)));
-        assert_eq!(told.rings, [counts(10, 6), counts(5, 1)]);
-        assert_eq!((told.symmetries[2], told.opponents[1]), (counts(15, 7), counts(15, 7)));
-        assert_eq!((told.areas[3], told.usual[3]), (counts(15, 7), counts(100, 40)));
-        assert_eq!(told.ends["finished"], 15);
+        let sums = CaseEvidence::of(&evidence, &variant, "a/b");
+        let counts = |plays, to_goal| PlayCounts { plays, to_goal };
+        assert_eq!((sums.all, sums.now), (counts(15, 7), counts(10, 6)));
+        assert_eq!(sums.rings, [counts(10, 6), counts(5, 1)]);
+        assert_eq!((sums.symmetries[2], sums.opponents[1]), (counts(15, 7), counts(15, 7)));
+        assert_eq!((sums.areas[3], sums.usual[3]), (counts(15, 7), counts(100, 40)));
+        assert_eq!(sums.ends["finished"], 15);
     }
 
     #[test]

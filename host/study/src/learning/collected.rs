@@ -10,7 +10,7 @@ use crate::learning::evidence::{Evidence, PLAY_LINE};
 /// Evidence and plays; as text `evidence.jsonl` with a line for each play behind the records.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Collected {
-    /// What became of cases.
+    /// Outcomes of cases.
     pub evidence: Evidence,
     /// Plays that led to a shot or a goal. The same play of two files is one.
     pub plays: BTreeSet<SuccessfulPlay>,
@@ -38,11 +38,13 @@ impl Collected {
 
     /// The text of `evidence.jsonl`.
     pub fn to_jsonl(&self) -> String {
-        let line = |play: &SuccessfulPlay| {
+        let mut text = self.evidence.to_jsonl();
+        for play in &self.plays {
             // Whole numbers and strings: it always serialises.
-            serde_json::to_string(&PlayLine { play: play.clone() }).unwrap_or_default() + "\n"
-        };
-        self.evidence.to_jsonl() + &self.plays.iter().map(line).collect::<String>()
+            text += &serde_json::to_string(&PlayLine { play: play.clone() }).unwrap_or_default();
+            text.push('\n');
+        }
+        text
     }
 
     /// Reads such a text; an error names its line.

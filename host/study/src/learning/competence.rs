@@ -40,7 +40,7 @@ impl Standing {
     }
 }
 
-/// What is known of a case.
+/// Sums of the evidence of a case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CaseStanding {
     /// All plays.

@@ -10,21 +10,24 @@ use similar::TextDiff;
 pub fn diff(before: &Files, after: &Files) -> String {
     let names: BTreeSet<&str> =
         before.cases.iter().chain(&after.cases).map(|file| file.name.as_str()).collect();
-    let text = |files: &'_ Files, name: &str| {
-        files.cases.iter().find(|file| file.name == name).map(|file| file.text.clone())
-    };
     let mut diff = String::new();
     for name in names {
-        let (old, new) = (text(before, name), text(after, name));
-        let head = |side: &str, text: &Option<String>| match text {
-            Some(_) => format!("{side}/{name}.toml"),
-            None => "/dev/null".to_owned(),
-        };
-        let (from, to) = (head("a", &old), head("b", &new));
-        let lines = TextDiff::from_lines(old.as_deref().unwrap_or(""), new.as_deref().unwrap_or(""));
+        let (old, new) = (text_of(before, name), text_of(after, name));
+        let lines = TextDiff::from_lines(old.unwrap_or(""), new.unwrap_or(""));
+        let (from, to) = (head("a", name, old), head("b", name, new));
         diff.push_str(&lines.unified_diff().header(&from, &to).to_string());
     }
     diff
+}
+
+/// The text of a case's file.
+pub(crate) fn text_of<'f>(files: &'f Files, case: &str) -> Option<&'f str> {
+    files.cases.iter().find(|file| file.name == case).map(|file| file.text.as_str())
+}
+
+/// Name of a file in the head of a difference, on this side.
+fn head(side: &str, name: &str, text: Option<&str>) -> String {
+    if text.is_some() { format!("{side}/{name}.toml") } else { "/dev/null".to_owned() }
 }
 
 #[cfg(test)]
@@ -32,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_change_a_new_file_and_a_deleted_one_are_told_apart() {
+    fn changed_new_and_deleted_files_have_their_own_heads() {
         let before = Files::from_texts("l", "", &[("a/gone", "x\n"), ("a/kept", "k\n"), ("a/set", "1\n2\n")]);
         let after = Files::from_texts("l", "", &[("a/kept", "k\n"), ("a/new", "y\n"), ("a/set", "1\n3\n")]);
         assert_eq!(

@@ -57,7 +57,7 @@ pub(crate) fn choose(occasions: &[Occasion], count: u32, seed: u64) -> Vec<&Occa
     chosen
 }
 
-/// What the robots do: where the partner stands, and both action lists as TOML.
+/// Plan of a draft: where the partner stands, and both action lists as TOML.
 struct DraftPlan {
     purpose: String,
     gets: String,
@@ -170,7 +170,7 @@ fn demand(presence: Presence) -> String {
     format!("presence = \"{}\"\n", presence.label())
 }
 
-/// Where a draft carries the ball, from its place, mm: ahead, aslant, to the sides.
+/// Displacements by which a draft carries the ball, mm: ahead, aslant, to the sides.
 const CARRIES: [[i32; 2]; 6] = [[500, 0], [400, 350], [400, -350], [100, 500], [100, -500], [900, 0]];
 /// Length and width of the four-legged league's field, mm.
 pub(crate) const FIELD: [i32; 2] = [5400, 3600];

@@ -8,7 +8,7 @@ use case_tools::{Files, SourceFile};
 use casebase::Presence;
 use serde::{Deserialize, Serialize};
 
-/// What a change does to a file.
+/// Change of a case file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Change {
@@ -16,7 +16,7 @@ pub enum Change {
     BallScope([i32; 2]),
     /// Radii of an opponent's scope, by its number from 0.
     OpponentScope(usize, [i32; 2]),
-    /// What an opponent's scope demands, by its number from 0.
+    /// Demand of an opponent's scope, by its number from 0.
     OpponentPresence(usize, Presence),
     /// One more opponent, with the radii of its scope and what that demands.
     AddOpponent([i32; 2], [i32; 2], Presence),
@@ -32,7 +32,7 @@ pub enum Change {
     Setting(String, String),
 }
 
-/// What edits of settings have in place of a case's name.
+/// Name in place of a case's in edits of settings.
 pub const RETRIEVAL: &str = "retrieval";
 
 /// One change to one case file, or to one setting.
@@ -40,26 +40,19 @@ pub const RETRIEVAL: &str = "retrieval";
 pub struct Edit {
     /// `region/name` of the case; [`RETRIEVAL`] for a setting.
     pub case: String,
-    /// What is done to it.
+    /// Change of its file.
     pub change: Change,
 }
 
-/// Why an edit cannot be made.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Refusal of an edit.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{case}: {what}")]
 pub struct EditError {
     /// `region/name` of the case.
     pub case: String,
-    /// What is missing or wrong.
+    /// Missing or wrong part.
     pub what: String,
 }
-
-impl fmt::Display for EditError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.case, self.what)
-    }
-}
-
-impl std::error::Error for EditError {}
 
 impl fmt::Display for Edit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -25,7 +25,7 @@ pub enum ScopeRing {
     Risk,
 }
 
-/// What a record is about.
+/// Key of a record.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct EvidenceKey {
     /// Hash of the library's files, 16 hexadecimal digits.
@@ -59,7 +59,7 @@ pub fn world_of_trials(profile: Profile) -> String {
 pub struct EvidenceCounts {
     /// Plays.
     pub plays: u64,
-    /// Of these, in trials that ended with the ball in or close to the goal; in matches those that a goal
+    /// Plays in trials that ended with the ball in or close to the goal; in matches those that a goal
     /// followed in the play's window (`arena::ledger`).
     pub to_goal: u64,
     /// Plays by their ends.
@@ -75,7 +75,7 @@ pub struct CasePlay<'p> {
     pub case: Option<u16>,
     /// Whether it counts as to goal.
     pub to_goal: bool,
-    /// How the play ended, as [`arena::CycleEnd::label`] says it.
+    /// End of the play, as [`arena::CycleEnd::label`] names it.
     pub end: Option<&'p str>,
 }
 
@@ -105,7 +105,7 @@ impl Posterior {
         self.beta += weight * (counts.plays - counts.to_goal.min(counts.plays)) as f64;
     }
 
-    /// Its mean.
+    /// Mean of the distribution.
     pub fn mean(&self) -> f64 {
         self.alpha / (self.alpha + self.beta)
     }
@@ -129,7 +129,7 @@ impl Evidence {
     /// Adds the decisions of a trial played with `variant` against `opponents`.
     pub fn add(&mut self, variant: &Variant, world: &str, opponents: &str, trial: &LearningTrial) {
         for decision in &trial.decisions {
-            let labels = arena::CycleEnd::DESCRIPTION;
+            let labels = arena::CycleEnd::LABELS;
             let end = decision.end.and_then(|end| labels.get(usize::from(end)).copied());
             let TrialDecision { situation, case, .. } = decision;
             let play = CasePlay { situation, case: *case, to_goal: trial.to_goal(), end };
@@ -225,7 +225,7 @@ impl Evidence {
 /// More plays than this of one record are a damaged number: a year of trials on a thousand cores.
 const PLAYS_MAX: u64 = 1 << 40;
 
-/// How lines of `evidence.jsonl` start that hold a successful play.
+/// Start of the lines of `evidence.jsonl` that hold a successful play.
 pub(crate) const PLAY_LINE: &str = "{\"play\":";
 
 /// (Δx/τx)² + (Δy/τy)².

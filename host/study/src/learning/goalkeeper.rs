@@ -28,7 +28,7 @@ pub(crate) fn among(opponents: &[[i32; 2]]) -> Option<usize> {
     keepers.max_by_key(|(_, [x, _])| *x).map(|(number, _)| number)
 }
 
-/// Where a goalkeeper mostly stands: in front of the middle of the goal, whose line is at 2700 mm.
+/// Usual place of a goalkeeper: in front of the middle of the goal, whose line is at 2700 mm.
 pub(crate) const PLACE: [i32; 2] = [2400, 0];
 /// Radii of the demand's scope: it moves with the ball, up to a ball scope's radius.
 pub(crate) const SCOPE: [i32; 2] = [700, 650];

@@ -2,62 +2,33 @@
 //! goes on from there, and shards in one directory read each other's.
 //!
 //! A shard plays its own units first and then waits for those of the others. Where another shard has not
-//! finished a unit for [`PATIENCE`] it counts as absent (not started yet, killed or never scheduled) and the
+//! finished a unit for [`ABSENT_AFTER`] it counts as absent (not started yet, killed or never scheduled) and the
 //! present ones play its units too, until its journal grows again. A unit that two shards play has equal
 //! trials in both journals, so that only time is lost.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::evaluation::Shard;
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::learning::player::{PlayError, Playable, Player};
 use crate::learning::trial::LearningTrial;
-use crate::learning::work::{PlayError, Player, Unit};
+use crate::store::{FileKind, LineFile, OpenError, Shard, whole_len};
 
 /// Longest journal that is read, bytes.
 const JOURNAL_LEN_MAX: u64 = 1 << 32;
 /// Time between two looks at the journals of other shards.
-const LOOK: Duration = Duration::from_millis(500);
+const LOOK_PERIOD: Duration = Duration::from_millis(500);
 /// Time without a unit of a shard that is waited for, after which it counts as absent: many times what a unit
 /// takes (16 trials, some 0.2 s of a core), so that shards which share a core are rarely played twice.
-const PATIENCE: Duration = Duration::from_secs(10);
-
-/// A unit that a journal can keep.
-pub trait Playable: Sync {
-    /// What is kept of each of its trials.
-    type Played: Clone + Send + Serialize + DeserializeOwned;
-    /// Its name in journals: equal for units that are played equally.
-    fn key(&self) -> u64;
-    /// Plays it, in a run with this seed.
-    fn play(&self, seed: u64) -> Result<Vec<Self::Played>, PlayError>;
-    /// What it took of a budget.
-    fn counts(&self, played: &[Self::Played]) -> u64;
-}
-
-impl Playable for Unit<'_> {
-    type Played = LearningTrial;
-
-    fn key(&self) -> u64 {
-        Unit::key(self)
-    }
-
-    fn play(&self, seed: u64) -> Result<Vec<LearningTrial>, PlayError> {
-        Unit::play(self, seed).map_err(PlayError::Simulation)
-    }
-
-    fn counts(&self, played: &[LearningTrial]) -> u64 {
-        played.len() as u64
-    }
-}
+const ABSENT_AFTER: Duration = Duration::from_secs(10);
 
 /// A finished unit.
 #[derive(Debug, Serialize, Deserialize)]
@@ -72,7 +43,7 @@ pub struct JournalPlayer<'s, T = LearningTrial> {
     identity: String,
     shard: Shard,
     seed: u64,
-    file: File,
+    file: LineFile,
     known: BTreeMap<u64, Vec<T>>,
     /// Bytes of each other shard's file that were read.
     read: BTreeMap<PathBuf, u64>,
@@ -99,19 +70,16 @@ impl<'s, T: Clone + Send + Serialize + DeserializeOwned> JournalPlayer<'s, T> {
         stopped: &'s AtomicBool,
         progress: &'s (dyn Fn(u64) + Sync),
     ) -> Result<Self, PlayError> {
-        let path = directory.join(file_name(shard));
-        let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
-        let mut file = file.map_err(PlayError::Journal)?;
-        if let Err(TryLockError::WouldBlock) = file.try_lock() {
-            let what = format!("{} is in use by another process", path.display());
-            return Err(PlayError::Journal(io::Error::other(what)));
-        }
-        let bytes = foreign::read_from(&file, JOURNAL_LEN_MAX).map_err(PlayError::Journal)?;
+        let path = directory.join(shard.name_of(JOURNALS));
+        let (mut file, bytes) = LineFile::open(&path, JOURNAL_LEN_MAX).map_err(|error| match error {
+            OpenError::InUse => PlayError::InUse(path.display().to_string()),
+            OpenError::File(error) => PlayError::Journal(error),
+        })?;
         let mut known = BTreeMap::new();
         let whole = absorb(&bytes, 0, identity, &path, &mut known)?;
-        file.set_len(whole).and_then(|()| file.seek(SeekFrom::End(0))).map_err(PlayError::Journal)?;
+        file.cut(whole).map_err(PlayError::Journal)?;
         if whole == 0 {
-            file.write_all(format!("{identity}\n").as_bytes()).map_err(PlayError::Journal)?;
+            file.append(format!("{identity}\n").as_bytes()).map_err(PlayError::Journal)?;
         }
         Ok(Self {
             directory: directory.to_owned(),
@@ -121,14 +89,14 @@ impl<'s, T: Clone + Send + Serialize + DeserializeOwned> JournalPlayer<'s, T> {
             file,
             known,
             read: BTreeMap::new(),
-            patience: PATIENCE,
+            patience: ABSENT_AFTER,
             absent: BTreeSet::new(),
             stopped,
             progress,
         })
     }
 
-    /// With another time after which a silent shard counts as absent; 10 s by default.
+    /// Sets the time after which a silent shard counts as absent; 10 s by default.
     #[must_use]
     pub fn with_patience(self, patience: Duration) -> Self {
         Self { patience, ..self }
@@ -137,30 +105,27 @@ impl<'s, T: Clone + Send + Serialize + DeserializeOwned> JournalPlayer<'s, T> {
     /// Reads what other shards have finished since the last call; returns the shards that have finished
     /// something, by index from 0. Shards of another partition count as none.
     fn look(&mut self) -> Result<BTreeSet<usize>, PlayError> {
-        let mut heard = BTreeSet::new();
+        let mut grown = BTreeSet::new();
         let entries = std::fs::read_dir(&self.directory).map_err(PlayError::Journal)?;
         for entry in entries {
             let path = entry.map_err(PlayError::Journal)?.path();
             let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-            if !name.starts_with(PREFIX) || name == file_name(self.shard) {
+            if !name.starts_with(JOURNALS.0) || name == self.shard.name_of(JOURNALS) {
                 continue;
             }
-            let own_partition = (1..=self.shard.parts())
-                .find(|index| Shard::new(*index, self.shard.parts()).is_some_and(|s| name == file_name(s)));
+            let other = Shard::from_name_of(JOURNALS, name);
             let from = self.read.get(&path).copied().unwrap_or(0);
             let mut file = foreign::open(&path).map_err(PlayError::Journal)?;
             file.seek(SeekFrom::Start(from)).map_err(PlayError::Journal)?;
             let bytes = foreign::read_from(&file, JOURNAL_LEN_MAX).map_err(PlayError::Journal)?;
             let whole = absorb(&bytes, from, &self.identity, &path, &mut self.known)?;
-            if whole > from
-                && let Some(index) = own_partition
-            {
-                heard.insert(index - 1);
+            if let Some(other) = other.filter(|other| whole > from && other.parts() == self.shard.parts()) {
+                grown.insert(other.index());
             }
             self.read.insert(path, whole);
         }
-        self.absent.retain(|index| !heard.contains(index));
-        Ok(heard)
+        self.absent.retain(|index| !grown.contains(index));
+        Ok(grown)
     }
 
     /// Plays some units of absent shards, beginning at another place than other shards do.
@@ -185,20 +150,19 @@ impl<'s, T: Clone + Send + Serialize + DeserializeOwned> JournalPlayer<'s, T> {
             let mut text = serde_json::to_vec(&line).map_err(|error| PlayError::Journal(error.into()))?;
             text.push(b'\n');
             let mut keeper = keeper.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            keeper.0.write_all(&text).map_err(PlayError::Journal)?;
+            keeper.0.append(&text).map_err(PlayError::Journal)?;
             progress(unit.counts(&line.trials));
             keeper.1.insert(line.unit, line.trials);
             Ok(())
         })
     }
+}
 
-    /// What became of every unit, in order; those that no journal has are played.
-    pub(crate) fn play_all<U: Playable<Played = T>>(
-        &mut self,
-        units: &[U],
-    ) -> Result<Vec<Vec<T>>, PlayError> {
+impl<U: Playable> Player<U> for JournalPlayer<'_, U::Played> {
+    /// Returns what became of every unit, in order; plays those that no journal has.
+    fn play(&mut self, units: &[U]) -> Result<Vec<Vec<U::Played>>, PlayError> {
         let keyed: Vec<_> = units.iter().map(|unit| (unit.key(), unit)).collect();
-        let missing = |known: &BTreeMap<u64, Vec<T>>| {
+        let missing = |known: &BTreeMap<u64, Vec<U::Played>>| {
             let mut asked = BTreeSet::new();
             let open = keyed.iter().filter(|(key, _)| !known.contains_key(key) && asked.insert(*key));
             open.copied().collect::<Vec<_>>()
@@ -213,12 +177,12 @@ impl<'s, T: Clone + Send + Serialize + DeserializeOwned> JournalPlayer<'s, T> {
         self.play_own(&open)?;
         if !open.is_empty() && self.shard != Shard::WHOLE {
             // Computers that share the directory over a network see what was handed to the disk.
-            self.file.sync_data().map_err(PlayError::Journal)?;
+            self.file.sync().map_err(PlayError::Journal)?;
         }
         let parts = self.shard.parts();
         let mut silent_since: BTreeMap<usize, Instant> = BTreeMap::new();
         loop {
-            let heard = self.look()?;
+            let grown = self.look()?;
             let open = missing(&self.known);
             if open.is_empty() {
                 break;
@@ -229,7 +193,7 @@ impl<'s, T: Clone + Send + Serialize + DeserializeOwned> JournalPlayer<'s, T> {
             let now = Instant::now();
             for index in open.iter().map(|(key, _)| part_of(*key, parts)) {
                 let since = silent_since.entry(index).or_insert(now);
-                if heard.contains(&index) {
+                if grown.contains(&index) {
                     *since = now;
                 } else if now.duration_since(*since) >= self.patience {
                     self.absent.insert(index);
@@ -238,16 +202,10 @@ impl<'s, T: Clone + Send + Serialize + DeserializeOwned> JournalPlayer<'s, T> {
             if open.iter().any(|(key, _)| self.absent.contains(&part_of(*key, parts))) {
                 self.play_for_absent(&open)?;
             } else {
-                std::thread::sleep(LOOK.min(self.patience));
+                std::thread::sleep(LOOK_PERIOD.min(self.patience));
             }
         }
         Ok(keyed.iter().filter_map(|(key, _)| self.known.get(key).cloned()).collect())
-    }
-}
-
-impl Player for JournalPlayer<'_> {
-    fn play(&mut self, units: &[Unit<'_>]) -> Result<Vec<Vec<LearningTrial>>, PlayError> {
-        self.play_all(units)
     }
 }
 
@@ -269,7 +227,7 @@ fn absorb<T: DeserializeOwned>(
     path: &Path,
     known: &mut BTreeMap<u64, Vec<T>>,
 ) -> Result<u64, PlayError> {
-    let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+    let whole = whole_len(bytes);
     let mut at = from;
     for line in bytes.get(..whole).unwrap_or_default().split_inclusive(|byte| *byte == b'\n') {
         if at == 0 {
@@ -291,20 +249,19 @@ fn absorb<T: DeserializeOwned>(
     Ok(at)
 }
 
-/// What two identities differ in, with both values: `world "0fa5e409", not "12345678"`.
+/// Differences of two identities, with both values: `world "0fa5e409", not "12345678"`.
 fn differences(own: &str, other: &str) -> String {
     let parsed = [own, other].map(serde_json::from_str::<BTreeMap<String, Value>>);
     let [Ok(own), Ok(other)] = parsed else { return "its first line does not identify a run".to_owned() };
-    let names: BTreeSet<_> = own.keys().chain(other.keys()).collect();
-    let value = |values: &BTreeMap<String, Value>, name: &str| values.get(name).cloned().unwrap_or_default();
-    let pairs = names.into_iter().map(|name| (name, value(&own, name), value(&other, name)));
-    let differing = pairs.filter(|(_, own, other)| own != other);
-    let words: Vec<_> = differing.map(|(name, own, other)| format!("{name} {own}, not {other}")).collect();
-    words.join("; ")
+    let mut differing = Vec::new();
+    for name in own.keys().chain(other.keys()).collect::<BTreeSet<_>>() {
+        let [own, other] = [&own, &other].map(|values| values.get(name).unwrap_or(&Value::Null));
+        if own != other {
+            differing.push(format!("{name} {own}, not {other}"));
+        }
+    }
+    differing.join("; ")
 }
 
-const PREFIX: &str = "journal-";
-
-fn file_name(shard: Shard) -> String {
-    format!("{PREFIX}{}l", shard.file_name().trim_start_matches("trials-").replace(".csv", ".json"))
-}
+/// Files of journals.
+const JOURNALS: FileKind = ("journal-", ".jsonl");

@@ -7,7 +7,7 @@ use crate::learning::trial::Situation;
 /// A situation of a trial.
 #[derive(Clone, Debug)]
 pub(crate) struct Occasion {
-    /// Where everything stood.
+    /// Places of ball and robots.
     pub(crate) situation: Situation,
     /// The world that it was played in.
     pub(crate) profile: Profile,

@@ -4,35 +4,14 @@
 use arena::Profile;
 use serde::Serialize;
 
-use crate::learning::betting::Wager;
+use crate::learning::betting::{PairedDifference, Wager};
 use crate::learning::starts::KINDS;
 use crate::learning::trial::LearningTrial;
-
-/// The difference of a count between the trials of pairs: with the change less without it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct PairedDifference {
-    /// Sum over the pairs.
-    pub sum: f64,
-    /// Sum of squares.
-    squares: f64,
-}
-
-impl PairedDifference {
-    fn add(&mut self, difference: f64) {
-        self.sum += difference;
-        self.squares += difference * difference;
-    }
-
-    /// The sum in standard deviations of chance, which gives each difference either sign.
-    pub fn z(&self) -> f64 {
-        if self.squares == 0.0 { 0.0 } else { self.sum / self.squares.sqrt() }
-    }
-}
 
 /// Pairs of one world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct WorldPairs {
-    /// To goal.
+    /// Pairs by whether the ball came to goal.
     pub to_goal: Wager,
     /// Touches of the opponents.
     pub touches: PairedDifference,
@@ -49,10 +28,10 @@ pub struct Pairs {
     pub worlds: [WorldPairs; 2],
 }
 
-/// What pairs say against a change.
+/// Objection of pairs to a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Objection {
-    /// To goal is lower in a world or a kind of starts.
+    /// Fewer balls come to goal in a world or a kind of starts.
     Lowers,
     /// The opponents touch the ball more often in a world where to goal rises by no more than chance gives.
     Touches,
@@ -69,7 +48,7 @@ impl Pairs {
         world.touches.add(f64::from(with.touches) - f64::from(without.touches));
     }
 
-    /// What stands against the change, if anything does.
+    /// Objection to the change, if there is one.
     pub(crate) fn objection(&self) -> Option<Objection> {
         let lowers = self.worlds.iter().any(|world| world.to_goal.z() < WORLD_LOWERED_Z)
             || self.kinds.iter().any(|kind| kind.z() < KIND_LOWERED_Z);
@@ -84,9 +63,9 @@ impl Pairs {
 const WORLD_LOWERED_Z: f64 = 0.0;
 /// A kind of starts counts as lowered from here on: p < 0.025 on one side.
 const KIND_LOWERED_Z: f64 = -1.96;
-/// Touches count as more frequent from here on, as the kinds.
+/// Touches count as more frequent from here on, standard deviations.
 const TOUCHES_Z: f64 = 1.96;
-/// To goal counts as raised from here on, as the kinds.
+/// The share to goal counts as raised from here on, standard deviations.
 const GAIN_Z: f64 = 1.96;
 
 #[cfg(test)]

@@ -44,24 +44,24 @@ pub(crate) fn plays_to_watch(
             let known = chosen
                 .iter()
                 .any(|other| *other == index || (of_new_kinds && kind_of(*other).0 == kind_of(index).0));
-            if chosen.len() < MOST && !known {
+            if chosen.len() < PLAYS_MAX && !known {
                 chosen.push(index);
             }
         }
     }
     let plan = StartPlan::new(seed, StartStream::HeldOut);
     let starts = chosen.into_iter().filter_map(|index| plan.get(index));
-    let play = |start: crate::evaluation::Planned| PlayToWatch {
+    let plays = starts.map(|start| PlayToWatch {
         scenario: start.cell.scenario.label(),
         opponents: start.cell.configuration.label(),
         profile: start.cell.profile.label(),
         seed: start.seed,
-    };
-    starts.map(play).collect()
+    });
+    plays.collect()
 }
 
 /// Plays that are listed.
-const MOST: usize = 3;
+const PLAYS_MAX: usize = 3;
 
 #[cfg(test)]
 mod tests {

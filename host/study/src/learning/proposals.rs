@@ -17,57 +17,38 @@ use crate::learning::edit::{Change, Edit, RETRIEVAL};
 use crate::learning::goalkeeper;
 use crate::learning::variant::Variant;
 
-/// Kinds of changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Kind {
-    /// Radii of ball and opponents' scopes.
-    Scopes,
-    /// Positions and actions.
-    Actions,
-    /// New cases.
-    New,
-    /// Deleted cases.
-    Forget,
-    /// The ranking's order, and the thresholds and rules of retrieval.
-    Order,
-}
-
-impl Kind {
-    /// All kinds.
-    pub const ALL: [Self; 5] = [Self::Scopes, Self::Actions, Self::New, Self::Forget, Self::Order];
-
-    /// Its name on the command line and in reports.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Scopes => "scopes",
-            Self::Actions => "actions",
-            Self::New => "new",
-            Self::Forget => "forget",
-            Self::Order => "order",
-        }
-    }
-
-    /// The kind with this name.
-    pub fn from_label(label: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.label() == label)
+hil_sim::labels! {
+    /// Kinds of changes.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Kind {
+        /// Radii of ball and opponents' scopes.
+        Scopes = "scopes",
+        /// Positions and actions.
+        Actions = "actions",
+        /// New cases.
+        New = "new",
+        /// Deleted cases.
+        Forget = "forget",
+        /// The ranking's order, and the thresholds and rules of retrieval.
+        Order = "order",
     }
 }
 
 /// A change to be tried.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Proposal {
-    /// Its kind.
+    /// Kind of change.
     pub kind: Kind,
     /// The edit.
     pub edit: Edit,
-    /// Why it is tried: the evidence, as a sentence.
+    /// Reason for it: the evidence, as a sentence.
     pub reason: String,
-    /// How much it may be worth, plays times rate.
+    /// Estimate of its worth, plays times rate.
     pub weight: f64,
 }
 
-/// How often an edit was tried, by the hash of the text that it was tried on.
+/// Number of times that an edit was tried, by the hash of the text that it was tried on.
 pub(crate) type Tried = BTreeMap<(u64, Edit), u32>;
 
 /// An edit that was tried as often is not proposed again.
@@ -107,7 +88,7 @@ pub(crate) fn from_evidence(
     weigh(proposals, variant, tried)
 }
 
-/// What may still be tried, heaviest first; every time that one was tried halves its weight.
+/// Proposals that may still be tried, heaviest first; every try halves the weight.
 pub(crate) fn weigh(mut proposals: Vec<Proposal>, variant: &Variant, tried: &Tried) -> Vec<Proposal> {
     proposals.retain_mut(|proposal| {
         let key = (text_hash(variant, &proposal.edit.case), proposal.edit.clone());
@@ -251,17 +232,15 @@ impl Draft<'_> {
         }
     }
 
-    /// What opponents' scopes demand, and a goalkeeper's own: evidence says where the case does worse than
+    /// Demands of opponents' scopes, and a goalkeeper's own: evidence shows where the case does worse than
     /// usual, and a demand keeps it from being played there.
     fn presences(&self, proposals: &mut Vec<Proposal>) {
         let CaseStanding { met, unmet, goalie, no_goalie, .. } = self.standing;
-        let told = |side: &Standing, what: &str| {
-            format!("{what}: {:.0} plays, {:+.1} points", side.plays(), 100.0 * side.advantage())
-        };
         let mut push = |change, side: &Standing, what: &str| {
-            let weight = side.plays() * -side.advantage();
-            if weight > 0.0 {
-                self.push(proposals, Kind::Scopes, change, told(side, what), weight);
+            let (plays, advantage) = (side.plays(), side.advantage());
+            if plays * -advantage > 0.0 {
+                let reason = format!("{what}: {plays:.0} plays, {:+.1} points", 100.0 * advantage);
+                self.push(proposals, Kind::Scopes, change, reason, plays * -advantage);
             }
         };
         for (n, presence) in (1..).map_while(|n| self.text.presence_of(n)).enumerate() {
@@ -372,7 +351,7 @@ const BALL_SCOPE_MAX: [i32; 2] = [900, 700];
 const OPPONENT_SCOPE_MAX: i32 = 700;
 /// Smallest radius, mm: below that a robot's own width decides.
 const SCOPE_MIN: i32 = 120;
-/// How points are moved, mm: a step or two of a robot.
+/// Displacements of points, mm: a step or two of a robot.
 const MOVES: [[i32; 2]; 6] = [[250, 0], [-250, 0], [0, 250], [0, -250], [250, 250], [250, -250]];
 
 #[cfg(test)]

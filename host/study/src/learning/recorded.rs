@@ -2,7 +2,7 @@
 //! actions, the opponents near the ball's path with scopes. mm, attack towards +x.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::{self, Write as _};
+use std::fmt::Write as _;
 
 use arena::successful_plays::{Holding, PlayEnd, SuccessfulPlay};
 use case_tools::{CaseLeague, Files, SourceFile, build_without_warnings};
@@ -16,29 +16,20 @@ use crate::learning::edit::{Change, Edit};
 use crate::learning::proposals::{Kind, Proposal};
 use crate::learning::trial::Situation;
 
-/// Why a play becomes no draft.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Reason for which a play becomes no draft.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DraftError {
-    /// It was played on another field than the league's; length and width of both, mm.
+    /// Played on another field than the league's; length and width of both, mm.
+    #[error(
+        "played on a field of {} x {} mm, the league's is {} x {}; take a library of its league", .0[0], .0[1], .1[0], .1[1]
+    )]
     Field([i32; 2], [i32; 2]),
     /// `league.toml` is refused, or has no kick at the goal.
+    #[error("league.toml is refused or has no kick at the goal; correct it")]
     League,
     /// A case of the league cannot say it: what the checks say.
+    #[error("{0}")]
     Refused(String),
-}
-
-impl fmt::Display for DraftError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Field([length, width], [own_length, own_width]) => write!(
-                f,
-                "played on a field of {length} x {width} mm, the league's is {own_length} x {own_width}; \
-                 take a library of its league"
-            ),
-            Self::League => f.write_str("league.toml is refused or has no kick at the goal; correct it"),
-            Self::Refused(why) => f.write_str(why),
-        }
-    }
 }
 
 /// A drafted case.
@@ -102,13 +93,12 @@ fn ends(play: &SuccessfulPlay, league: &CaseLeague) -> Vec<String> {
         let [x, y] = place(&league.field, play.holdings.last().map_or([0, 0], |last| last.left));
         return vec![format!("{{ dribble_to = [{x}, {y}] }}")];
     };
-    let offset = |aim: &KickAim| match aim {
-        KickAim::Goal { offset_mm } => Some(*offset_mm),
-        KickAim::Heading { .. } => None,
-    };
-    let mut kicks: Vec<(i32, i32, &String)> = (league.kicks.iter())
-        .filter_map(|(name, kick)| offset(&kick.aim).map(|at| ((at - y).abs(), at.abs(), name)))
-        .collect();
+    let mut kicks: Vec<(i32, i32, &String)> = Vec::new();
+    for (name, kick) in &league.kicks {
+        if let KickAim::Goal { offset_mm: at } = kick.aim {
+            kicks.push(((at - y).abs(), at.abs(), name));
+        }
+    }
     kicks.sort_unstable();
     // A name from league.toml needs no escapes but as a string of TOML, which JSON's is.
     kicks.iter().map(|(_, _, name)| format!("{{ kick = {} }}", serde_json::json!(name))).collect()
@@ -240,7 +230,7 @@ impl<'p> Plan<'p> {
     }
 }
 
-/// Where a robot got the ball: where it kicked it unless it carried it. A kick's place is known better.
+/// Place where a robot got the ball: where it kicked it unless it carried it. A kick's place is known better.
 fn received(holding: &Holding) -> [i32; 2] {
     if distance(holding.got, holding.left) > CARRIED_FROM { holding.got } else { holding.left }
 }
@@ -278,7 +268,7 @@ fn point(action: &str, [x, y]: [i32; 2]) -> String {
     format!("{{ {action} = [{x}, {y}] }}")
 }
 
-/// Of a point from a leg, all in mm.
+/// Distance of a point from a leg, mm.
 fn distance_to_leg(at: [i32; 2], from: [i32; 2], to: [i32; 2]) -> f32 {
     let point = |[x, y]: [i32; 2]| Point::<Field>::new(x as f32, y as f32);
     Segment::new(point(from), point(to)).distance_to(point(at))
@@ -373,7 +363,7 @@ mod tests {
         assert!(refused.to_string().contains("5400 x 3600"), "{refused}");
     }
 
-    /// Without the opponent before the goal.
+    /// A play without the opponent before the goal.
     fn quiet() -> SuccessfulPlay {
         SuccessfulPlay { opponents: Vec::new(), ..play() }
     }

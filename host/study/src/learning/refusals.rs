@@ -11,11 +11,11 @@ pub const REFUSALS: &str = "refused.jsonl";
 /// Reads the text of such a file; an error names its line.
 pub fn read_refusals(text: &str) -> Result<BTreeSet<Edit>, String> {
     let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
-    let edit = |(number, line)| {
+    let edits = lines.map(|(number, line)| {
         serde_json::from_str(line)
             .map_err(|error| format!("line {number}: {error}; delete it, and refuse the change again"))
-    };
-    lines.map(edit).collect()
+    });
+    edits.collect()
 }
 
 /// The text of such a file.

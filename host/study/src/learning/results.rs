@@ -15,28 +15,28 @@ use crate::learning::starts::{KINDS, StartKind, kind_of};
 use crate::learning::trial::LearningTrial;
 use crate::learning::variant::Variant;
 
-/// What became of a proposal.
+/// Verdict on a proposal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// Of a run that changes nothing.
+    /// Proposed in a run that changes nothing.
     Proposed,
-    /// It changes what is played in hardly any situation.
+    /// Play changes in hardly any situation.
     Rare,
     /// Others were better in the first situations.
     ScreenedOut,
     /// The sequential test did not reach its threshold.
     Unconfirmed,
-    /// It does not fit the library any more after the changes before it.
+    /// No longer applicable to the library after the changes before it.
     Superseded,
     /// `cases check` would warn.
     Warned,
-    /// It lowers a kind of validation starts, or all of a world together.
+    /// The result is lower in a kind of validation starts, or in all of a world together.
     Lowers,
     /// On validation starts of a world the opponents touch the ball more often with it, and its gain there
     /// may be chance.
     Touches,
-    /// It is in the learned library.
+    /// Taken over into the learned library.
     Accepted,
 }
 
@@ -45,9 +45,9 @@ pub enum Verdict {
 pub struct Validation {
     /// All of them.
     pub all: Wager,
-    /// By kind of start or by opponent, with its name.
+    /// Pairs by kind of start or by opponent, with its name.
     pub kinds: Vec<(String, Wager)>,
-    /// Of trials as in the paper's simulator and as by its robots; empty for matches.
+    /// Pairs of trials as in the paper's simulator and as by its robots; empty for matches.
     pub worlds: Vec<WorldPairs>,
 }
 
@@ -65,14 +65,14 @@ pub struct ChangeRecord {
     pub round: u32,
     /// The change.
     pub proposal: Proposal,
-    /// Its pairs: whole trials of the test, or situations that it changes what is played in where it was
+    /// Pairs: whole trials of the test, or situations that it changes what is played in where it was
     /// screened alone.
     pub wager: Wager,
     /// The share of such situations among those of play.
     pub share: f64,
     /// The e-value that the test needed; none where it was not tested.
     pub needed: Option<f64>,
-    /// What became of it.
+    /// Verdict on it.
     pub verdict: Verdict,
     /// Pairs on validation starts.
     pub validation: Option<Validation>,
@@ -87,11 +87,11 @@ pub struct CurvePoint {
     pub spent: u64,
     /// Held-out starts.
     pub starts: u32,
-    /// Of these, with the ball in or close to the goal, percent.
+    /// Share of these with the ball in or close to the goal, percent.
     pub to_goal: f64,
-    /// The same of random starts alone.
+    /// Share to goal of random starts alone, percent.
     pub to_goal_random: f64,
-    /// The same of the starts that are played as by the paper's robots; none where a run has no such.
+    /// Share to goal of the starts that are played as by the paper's robots; none where a run has no such.
     pub to_goal_robots: Option<f64>,
     /// Touches of the opponents, a trial.
     pub touches: f64,
@@ -128,10 +128,10 @@ pub(crate) fn note_tried(tried: &mut Tried, current: &Variant, changes: &[Change
     }
 }
 
-/// What a run has learned.
+/// Result of a run.
 #[derive(Clone, Debug)]
 pub struct Learned {
-    /// Its settings.
+    /// Settings of the run.
     pub settings: LearnSettings,
     /// The library before.
     pub start: Variant,
@@ -159,12 +159,12 @@ impl Learned {
         self.changes.iter().filter(|change| change.verdict == Verdict::Accepted)
     }
 
-    /// What was played, and what a budget counts.
+    /// Name of the units that were played, which a budget counts.
     pub fn played(&self) -> &'static str {
         if self.opponents.is_empty() { "trials" } else { "scenes" }
     }
 
-    /// What the learned library has in other files or lines, as a unified diff.
+    /// Differences of the learned library in files and lines, as a unified diff.
     pub fn diff(&self) -> String {
         diff(&self.start.files, &self.end.files)
     }

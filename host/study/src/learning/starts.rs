@@ -12,7 +12,7 @@ use brain::Approach;
 use hil_sim::{Configuration, Scenario};
 use serde::{Deserialize, Serialize};
 
-/// What starts are used for.
+/// Use of starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartStream {
@@ -33,7 +33,7 @@ pub struct StartKind {
     pub profile: Profile,
     /// The opponents.
     pub opponents: Configuration,
-    /// Where everything stands.
+    /// Start positions.
     pub scenario: Scenario,
 }
 
@@ -42,7 +42,7 @@ impl StartKind {
         Self { profile, opponents, scenario }
     }
 
-    /// Its name, such as `dg random` or `robots dg 3`.
+    /// Name, such as `dg random` or `robots dg 3`.
     pub fn label(self) -> String {
         let Self { profile, opponents, scenario } = self;
         let world = if profile == Profile::Robots { "robots " } else { "" };
@@ -83,29 +83,21 @@ pub fn kind_of(index: u32) -> (usize, u32) {
     (kind, cycle * times(&CYCLE) + times(&CYCLE[..slot]))
 }
 
-/// The worlds that a run learns in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Worlds {
-    /// The paper's simulator, noiseless.
-    Simulated,
-    /// As the paper's robots play: noise, and a pause after every cycle.
-    Robots,
-    /// Both: a change may lower neither.
-    Both,
+hil_sim::labels! {
+    /// The worlds that a run learns in.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Worlds {
+        /// The paper's simulator, noiseless.
+        Simulated = "simulated",
+        /// The paper's robots: noise, and a pause after every cycle.
+        Robots = "robots",
+        /// Both: a change may lower neither.
+        Both = "both",
+    }
 }
 
 impl Worlds {
-    /// The worlds with this name on the command line.
-    pub fn from_label(label: &str) -> Option<Self> {
-        match label {
-            "simulated" => Some(Self::Simulated),
-            "robots" => Some(Self::Robots),
-            "both" => Some(Self::Both),
-            _ => None,
-        }
-    }
-
     /// Whether starts of this kind are played.
     pub fn has(self, kind: StartKind) -> bool {
         match self {

@@ -37,7 +37,7 @@ pub struct TrialDecision {
     /// Whether it is retrieval's answer alone.
     #[serde(rename = "r")]
     pub retrieved: bool,
-    /// How the play ended, by its place in [`CycleEnd::DESCRIPTION`].
+    /// End of the play, by its place in [`CycleEnd::LABELS`].
     #[serde(rename = "e")]
     pub end: Option<u8>,
 }
@@ -45,13 +45,13 @@ pub struct TrialDecision {
 /// A trial's outcome and decisions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LearningTrial {
-    /// How it ended.
+    /// End of the trial.
     #[serde(rename = "o")]
     pub outcome: TrialOutcome,
-    /// How often the defender had the ball.
+    /// Times that the defender had the ball.
     #[serde(rename = "p")]
     pub touches: u32,
-    /// Its decisions, in order; empty where they are not recorded.
+    /// Decisions, in order; empty where they are not recorded.
     #[serde(rename = "d", default, skip_serializing_if = "Vec::is_empty")]
     pub decisions: Vec<TrialDecision>,
 }
@@ -63,7 +63,7 @@ impl LearningTrial {
     }
 }
 
-/// Where the ball is in play, mm: inside the lines of 2700 and 1800 mm.
+/// Limits of a ball in play along x and y, mm: inside the lines of 2700 and 1800 mm.
 const BALL_INSIDE: [i32; 2] = [2650, 1750];
 
 impl Situation {
@@ -158,7 +158,7 @@ impl Watcher for Recorder {
         for (id, decision) in &mut self.decisions {
             let cycle = moment.cycles.cycles().iter().find(|cycle| cycle.id == *id);
             let end = cycle.and_then(|cycle| cycle.end).map_or(CycleEnd::TrialOver, |(_, end)| end);
-            let place = CycleEnd::DESCRIPTION.iter().position(|label| *label == end.label());
+            let place = CycleEnd::LABELS.iter().position(|label| *label == end.label());
             decision.end = place.and_then(|place| u8::try_from(place).ok());
         }
     }

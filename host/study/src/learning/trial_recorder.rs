@@ -18,7 +18,7 @@ pub struct TrialRecorder {
 }
 
 impl TrialRecorder {
-    /// What it has kept, once the trial is over: evidence of this library, world and opponents.
+    /// Record once the trial is over: evidence of this library, world and opponents.
     pub fn collected(&self, library: &Variant, world: &str, opponents: &str) -> Collected {
         let mut evidence = Evidence::default();
         if let Some(trial) = &self.trial {

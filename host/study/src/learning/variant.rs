@@ -13,25 +13,32 @@ use crate::learning::edit::{Change, Edit, EditError};
 /// A library and the files that it was built from.
 #[derive(Clone, Debug)]
 pub struct Variant {
-    /// Its files.
+    /// Files of the library.
     pub files: Files,
     library: Arc<Library>,
     /// The settings that robots retrieve with.
     pub settings: RetrievalSettings,
-    /// Hash of its files' names and texts, and of settings that are not the usual ones.
+    /// Hash of its files' names and texts, and of settings that are not at their defaults.
     pub hash: u64,
 }
 
-/// Why a library cannot be played.
-#[derive(Debug)]
+/// Refusal of a library.
+#[derive(Debug, thiserror::Error)]
 pub enum VariantError {
     /// An edit does not fit the files.
+    #[error(transparent)]
     Edit(EditError),
     /// The files are refused, with findings.
+    #[error("the library is refused; correct it:{}", lines(.0))]
     Refused(Vec<Finding>),
 }
 
-/// What retrieval answers: the case's name and symmetry, and the robots that play it.
+/// A line for each finding.
+fn lines(findings: &[Finding]) -> String {
+    findings.iter().map(|finding| format!("\n  {finding}")).collect()
+}
+
+/// Answer of retrieval: the case's name and symmetry, and the robots that play it.
 pub type Answer = Option<(String, u16, Vec<u8>)>;
 
 impl Variant {
@@ -67,12 +74,12 @@ impl Variant {
         Self::with_settings(files, settings)
     }
 
-    /// Settings of retrieval that are not the usual ones, as `name=value`.
+    /// Settings of retrieval that are not at their defaults, as `name=value`.
     pub fn changed_settings(&self) -> Vec<String> {
         changed(&self.settings)
     }
 
-    /// Its case base.
+    /// Case base of the library.
     pub fn base(&self) -> CaseBase<'_> {
         self.library.base()
     }
@@ -93,7 +100,7 @@ impl Variant {
         CaseNames::new(self.names().iter().cloned())
     }
 
-    /// What a robot would retrieve. Ids change with the number of files, names do not.
+    /// Retrieves as a robot would. Ids change with the number of files, names do not.
     pub fn answer(&self, base: &CaseBase<'_>, problem: &Problem) -> Answer {
         let found = retrieve_best(base, problem, &self.settings)?;
         let name = self.names().get(usize::from(found.case.0 / 4)).cloned().unwrap_or_default();
@@ -110,7 +117,7 @@ impl Variant {
 }
 
 fn changed(settings: &RetrievalSettings) -> Vec<String> {
-    let usual = RetrievalSettings::default();
-    let both = settings.describe().zip(usual.describe());
-    both.filter(|(own, usual)| own != usual).map(|((name, value), _)| format!("{name}={value}")).collect()
+    let defaults = RetrievalSettings::default();
+    let both = settings.describe().zip(defaults.describe());
+    both.filter(|(own, default)| own != default).map(|((name, value), _)| format!("{name}={value}")).collect()
 }

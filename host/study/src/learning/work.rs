@@ -1,19 +1,15 @@
-//! `work`: units of trials, and who plays them. Learning asks for units; how many threads, processes and
-//! interrupted runs it took to play them has no effect on what it learns.
+//! `work`: units of trials.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
-use crate::evaluation::Planned;
-use arena::Profile;
-use arena::TrialConfig;
-use arena::game::GameError;
+use arena::{Profile, TrialConfig};
 use brain::Approach;
-use foreign::printable;
 use geometry::{Angle, Field, Point, Pose};
 use hil_sim::{Configuration, Fnv, Layout, OpponentRole, Placed, Scenario, SimulationError};
 use serde::{Deserialize, Serialize};
 
+use crate::evaluation::Planned;
+use crate::learning::player::{PlayError, Playable};
 use crate::learning::starts::{StartPlan, StartStream};
 use crate::learning::trial::{LearningTrial, Situation, play};
 use crate::learning::variant::Variant;
@@ -35,7 +31,7 @@ pub enum Work {
     },
     /// A situation, played from standing robots.
     Situation {
-        /// Where everything stands.
+        /// Places of ball and robots.
         situation: Situation,
         /// The world that it is played in.
         profile: Profile,
@@ -57,69 +53,10 @@ pub struct Unit<'a> {
     pub work: Work,
 }
 
-/// Plays units, or knows what became of them.
-pub trait Player {
-    /// The trials of every unit, in order.
-    fn play(&mut self, units: &[Unit<'_>]) -> Result<Vec<Vec<LearningTrial>>, PlayError>;
-}
+impl Playable for Unit<'_> {
+    type Played = LearningTrial;
 
-/// Why units were not played.
-#[derive(Debug)]
-pub enum PlayError {
-    /// The simulator cannot go on.
-    Simulation(SimulationError),
-    /// A match cannot go on.
-    Match(GameError),
-    /// The journal cannot be read or written.
-    Journal(std::io::Error),
-    /// The journal is of another run: other settings, library or world.
-    OtherRun {
-        /// The journal.
-        file: String,
-        /// What differs, with the journal's value first.
-        differences: String,
-    },
-    /// A line of a journal is no unit.
-    Damaged {
-        /// The journal.
-        file: String,
-        /// Where the line begins, bytes.
-        at: u64,
-        /// The error in it.
-        what: String,
-    },
-    /// Stopped by hand; what is finished is kept.
-    Stopped,
-}
-
-impl fmt::Display for PlayError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Simulation(error) => write!(f, "a trial cannot be played: {error}"),
-            Self::Match(error) => write!(f, "a match cannot be played: {error}"),
-            Self::Journal(error) => {
-                write!(f, "the journal of trials cannot be kept: {error}; make the output directory writable")
-            }
-            Self::OtherRun { file, differences } => {
-                let (file, differences) = (printable(file), printable(differences));
-                write!(f, "{file} is of another run: {differences}; take another --out")
-            }
-            Self::Damaged { file, at, what } => write!(
-                f,
-                "{}: the line at byte {at} is no unit of trials: {}; remove the file, its units are played again",
-                printable(file),
-                printable(what)
-            ),
-            Self::Stopped => f.write_str("stopped; the same command goes on from here"),
-        }
-    }
-}
-
-impl std::error::Error for PlayError {}
-
-impl Unit<'_> {
-    /// The unit's name in journals: equal for equal trials.
-    pub fn key(&self) -> u64 {
+    fn key(&self) -> u64 {
         let mut hash = Fnv::default();
         hash.add(&self.variant.hash.to_le_bytes());
         // Plain data without maps of float keys: it always serialises.
@@ -127,50 +64,53 @@ impl Unit<'_> {
         hash.value()
     }
 
-    /// Number of its trials.
-    pub fn trials(&self) -> u32 {
-        match &self.work {
-            Work::Starts { indices, .. } => indices.len() as u32,
-            Work::Situation { trials, .. } => *trials,
-        }
+    fn play(&self, seed: u64) -> Result<Vec<LearningTrial>, PlayError> {
+        self.run(seed).map_err(PlayError::Simulation)
     }
 
-    /// Plays the unit.
-    pub fn play(&self, seed: u64) -> Result<Vec<LearningTrial>, SimulationError> {
-        let (base, names) = (self.variant.base(), self.variant.case_names());
-        let with_variant = |config: TrialConfig<'static>| TrialConfig {
-            settings: self.variant.settings.clone(),
-            ..config.with_library(base, names.clone())
-        };
+    fn counts(&self, played: &[LearningTrial]) -> u64 {
+        played.len() as u64
+    }
+}
+
+impl Unit<'_> {
+    fn run(&self, seed: u64) -> Result<Vec<LearningTrial>, SimulationError> {
         match &self.work {
             Work::Starts { stream, indices, record } => {
                 let plan = StartPlan::new(seed, *stream);
                 let starts = indices.iter().filter_map(|index| plan.get(*index));
-                let trial = |Planned { cell, seed, .. }: Planned| {
-                    let config = TrialConfig::new(cell.scenario, cell.configuration, cell.approach, seed);
-                    play(&cell.profile.apply(with_variant(config)), *record)
-                };
-                starts.map(trial).collect()
+                starts
+                    .map(|Planned { cell, seed, .. }| {
+                        let config = TrialConfig::new(cell.scenario, cell.configuration, cell.approach, seed);
+                        play(&cell.profile.apply(self.with_library(config)), *record)
+                    })
+                    .collect()
             }
             Work::Situation { situation, profile, two_defenders, first, trials } => {
                 let configuration =
                     if *two_defenders { Configuration::TwoDefenders } else { Configuration::DefenderGoalie };
                 let layout = layout(situation, configuration);
-                let trial = |number| {
-                    let mut hash = Fnv::default();
-                    hash.add(&seed.to_le_bytes());
-                    hash.add(&u32::to_le_bytes(number));
-                    let config = TrialConfig::new(
-                        Scenario::Random,
-                        configuration,
-                        Approach::Cases,
-                        hash.value() >> 16,
-                    );
-                    let config = TrialConfig { layout: Some(layout.clone()), ..config };
-                    play(&profile.apply(with_variant(config)), false)
-                };
-                (0..*trials).map(|number| trial(first.saturating_add(number))).collect()
+                let numbers = (0..*trials).map(|number| first.saturating_add(number));
+                numbers
+                    .map(|number| {
+                        let mut hash = Fnv::default();
+                        hash.add(&seed.to_le_bytes());
+                        hash.add(&u32::to_le_bytes(number));
+                        let seed = hash.value() >> 16;
+                        let config = TrialConfig::new(Scenario::Random, configuration, Approach::Cases, seed);
+                        let config = TrialConfig { layout: Some(layout.clone()), ..config };
+                        play(&profile.apply(self.with_library(config)), false)
+                    })
+                    .collect()
             }
+        }
+    }
+
+    /// A trial with the unit's library and its settings of retrieval.
+    fn with_library<'t>(&'t self, config: TrialConfig<'static>) -> TrialConfig<'t> {
+        TrialConfig {
+            settings: self.variant.settings.clone(),
+            ..config.with_library(self.variant.base(), self.variant.case_names())
         }
     }
 }

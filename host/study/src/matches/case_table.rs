@@ -6,7 +6,7 @@ use super::match_team::MatchTeam;
 use super::outcome::Outcome;
 use arena::ledger::{CaseLine, CaseTable, FOLLOWED};
 
-/// What became of every case, over all matches of the teams that play cases.
+/// Tables of what became of every case, over all matches of the teams that play cases.
 pub(super) fn case_tables(outcomes: &[Outcome]) -> String {
     let mut teams: Vec<(MatchTeam, CaseTable)> = Vec::new();
     for (team, table) in outcomes.iter().flat_map(|o| [(o.own, &o.cases[0]), (o.opponent, &o.cases[1])]) {

@@ -7,8 +7,8 @@ use super::MatchIdentity;
 use super::effect::Change;
 use super::plan::{MatchPlan, Pairing};
 use super::row::MatchRow;
-use crate::evaluation::Difference;
 use crate::statistics::{Sample, detectable};
+use crate::store::Difference;
 
 /// Matches of one pair of teams, or of all.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -50,24 +50,24 @@ pub fn compare_matches(plan: &MatchPlan, before: &[MatchRow], after: &[MatchRow]
 }
 
 fn of(pairing: Option<Pairing>, pairs: &[(&MatchRow, &MatchRow)]) -> Option<MatchComparison> {
-    let is_of = |row: &MatchRow, Pairing { own, opponent }| (row.own, row.opponent) == (own, opponent);
-    let pairs = || pairs.iter().filter(|(_, row)| pairing.is_none_or(|pairing| is_of(row, pairing)));
-    let ahead = |goals: u32, against: u32| f64::from(goals) - f64::from(against);
-    let goals = pairs().map(|(before, after)| {
-        ahead(after.goals, after.goals_against) - ahead(before.goals, before.goals_against)
+    let pairs = pairs.iter().filter(|(_, row)| {
+        pairing.is_none_or(|Pairing { own, opponent }| (row.own, row.opponent) == (own, opponent))
     });
-    let shots = pairs().map(|(before, after)| {
-        ahead(after.shots, after.shots_against) - ahead(before.shots, before.shots_against)
-    });
-    let sum = |rows: &mut dyn Iterator<Item = &MatchRow>| {
-        rows.fold([0, 0], |[own, theirs], row| [own + row.goals, theirs + row.goals_against])
-    };
+    let goals =
+        pairs.clone().map(|(before, after)| after.ahead(|side| side.goals) - before.ahead(|side| side.goals));
+    let shots =
+        pairs.clone().map(|(before, after)| after.ahead(|side| side.shots) - before.ahead(|side| side.shots));
     Some(MatchComparison {
         pairing,
-        goals_before: sum(&mut pairs().map(|(before, _)| *before)),
-        goals_after: sum(&mut pairs().map(|(_, after)| *after)),
+        goals_before: goals_of(pairs.clone().map(|(before, _)| *before)),
+        goals_after: goals_of(pairs.map(|(_, after)| *after)),
         detectable_goals: Sample::of(goals.clone()).and_then(detectable),
         goals: Change::of(goals, |x| x)?,
         shots: Change::of(shots, |x| x)?,
     })
+}
+
+/// Goals of all these matches, for and against.
+fn goals_of<'r>(rows: impl Iterator<Item = &'r MatchRow>) -> [u32; 2] {
+    rows.fold([0, 0], |[own, theirs], row| [own + row.sides[0].goals, theirs + row.sides[1].goals])
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::match_team::MatchTeam;
 use super::passes::CONFIDENCE;
-use super::plan::MatchPlan;
+use super::plan::{MatchPlan, Pairing};
 use super::row::MatchRow;
 use crate::statistics::{Sample, paired, student};
 
@@ -45,7 +45,7 @@ impl Change {
 /// Effect of a part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Effect {
-    /// Its name; several with a `+` between.
+    /// Name of the part; several with a `+` between.
     pub part: String,
     /// The team that played with it.
     pub with: MatchTeam,
@@ -65,28 +65,32 @@ pub struct Effect {
 
 /// One for each pair of the plan whose teams differ by parts that one of them has and the other lacks.
 pub fn effects(plan: &MatchPlan, rows: &[MatchRow]) -> Vec<Effect> {
-    let of = |own: MatchTeam, opponent: MatchTeam| {
-        let (part, own_has) = own.part_beside(opponent)?;
-        let rows = rows.iter().filter(|row| (row.own, row.opponent) == (own, opponent));
-        let sign = if own_has { 1.0 } else { -1.0 };
-        let goals = |row: &MatchRow| f64::from(row.goals) - f64::from(row.goals_against);
-        let shots = |row: &MatchRow| f64::from(row.shots) - f64::from(row.shots_against);
-        let attack =
-            |row: &MatchRow| ((f64::from(row.shots) + HALF) / (f64::from(row.shots_against) + HALF)).ln();
-        let offence = |row: &MatchRow| row.offence_ratio().filter(|ratio| *ratio > 0.0).map(f64::ln);
-        Some(Effect {
-            part,
-            with: if own_has { own } else { opponent },
-            without: if own_has { opponent } else { own },
-            matches: rows.clone().count() as u32,
-            goals: Change::of(rows.clone().map(|row| sign * goals(row)), |x| x),
-            shots: Change::of(rows.clone().map(|row| sign * shots(row)), |x| x),
-            offence_ratio: Change::of(rows.clone().filter_map(offence).map(|x| sign * x), f64::exp),
-            attack_ratio: Change::of(rows.map(|row| sign * attack(row)), f64::exp),
-        })
-    };
-    plan.pairings.iter().filter_map(|pairing| of(pairing.own, pairing.opponent)).collect()
+    plan.pairings.iter().filter_map(|pairing| effect(*pairing, rows)).collect()
+}
+
+fn effect(Pairing { own, opponent }: Pairing, rows: &[MatchRow]) -> Option<Effect> {
+    let (part, own_has) = own.part_beside(opponent)?;
+    let (with, without) = if own_has { (own, opponent) } else { (opponent, own) };
+    let rows = rows.iter().filter(|row| (row.own, row.opponent) == (own, opponent));
+    let sign = if own_has { 1.0 } else { -1.0 };
+    let offences = rows.clone().filter_map(MatchRow::offence_ratio).filter(|ratio| *ratio > 0.0);
+    Some(Effect {
+        part,
+        with,
+        without,
+        matches: rows.clone().count() as u32,
+        goals: Change::of(rows.clone().map(|row| sign * row.ahead(|side| side.goals)), |x| x),
+        shots: Change::of(rows.clone().map(|row| sign * row.ahead(|side| side.shots)), |x| x),
+        offence_ratio: Change::of(offences.map(|ratio| sign * ratio.ln()), f64::exp),
+        attack_ratio: Change::of(rows.map(|row| sign * log_attack_ratio(row)), f64::exp),
+    })
+}
+
+/// Logarithm of the attack ratio, with a part of a shot added to both sides.
+fn log_attack_ratio(row: &MatchRow) -> f64 {
+    let [own, theirs] = row.sides.each_ref().map(|side| f64::from(side.shots) + ADDED_SHOTS);
+    (own / theirs).ln()
 }
 
 /// Half a shot, added to both sides (Haldane 1956).
-const HALF: f64 = 0.5;
+const ADDED_SHOTS: f64 = 0.5;

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct MatchTeam {
-    /// What decides its open play.
+    /// Strategy of its open play.
     pub team: Team,
     /// Tactics of the second paper that its host plays.
     pub tactics: Tactics,
@@ -25,7 +25,7 @@ pub struct MatchTeam {
 }
 
 impl MatchTeam {
-    /// Our team with the usual tactics.
+    /// Our team with the default tactics.
     pub fn ours() -> Self {
         Self::from(Team::Ours)
     }
@@ -40,12 +40,12 @@ impl MatchTeam {
         Self { strategy: true, ..Self::ours() }
     }
 
-    /// Our team once for each part of the second paper, and once for the cases: without it where it is usual
-    /// and with it where it is not.
+    /// Our team once for each part of the second paper, and once for the cases: without it where it is on by
+    /// default and with it where it is not.
     pub fn ablations() -> Vec<Self> {
-        let usual = Self::ours().parts();
+        let defaults = Self::ours().parts();
         let flipped = |part: &String| {
-            let mut parts = usual.clone();
+            let mut parts = defaults.clone();
             if !parts.remove(part) {
                 parts.insert(part.clone());
             }
@@ -54,12 +54,12 @@ impl MatchTeam {
         Self::all_parts().iter().filter_map(flipped).collect()
     }
 
-    /// What decides the actions of its robots.
+    /// Approach of its robots: cases, or reactive behaviour.
     pub fn approach(self) -> Approach {
         if self.cases { Approach::Cases } else { Approach::Reactive }
     }
 
-    /// What its host plays: a host whose robots play no cases proposes none.
+    /// Tactics of its host: a host whose robots play no cases proposes none.
     pub fn host_tactics(self) -> Tactics {
         Tactics { bridge: self.tactics.bridge && self.cases, ..self.tactics }
     }
@@ -93,7 +93,7 @@ impl MatchTeam {
             parts.extend(with.split('+').map(str::to_owned));
         }
         for part in without.into_iter().flat_map(|without| without.split('+')) {
-            // The parts after `without` are checked too: a typing error must not be read as the usual team.
+            // The parts after `without` are checked too: a typing error must not be read as the default team.
             Self::of_parts(BTreeSet::from([part.to_owned()])).map_err(|_| wrong())?;
             parts.remove(part);
         }
@@ -155,12 +155,12 @@ impl fmt::Display for MatchTeam {
         if *self == Self::round_1() && *self != Self::ours() {
             return f.write_str(ROUND_1);
         }
-        let (own, usual) = (self.parts(), Self::ours().parts());
+        let (own, defaults) = (self.parts(), Self::ours().parts());
         let change = |parts: Vec<&String>| parts.into_iter().cloned().collect::<BTreeSet<_>>();
         f.write_str(self.team.label())?;
         for (label, parts) in [
-            ("-with-", change(own.difference(&usual).collect())),
-            ("-without-", change(usual.difference(&own).collect())),
+            ("-with-", change(own.difference(&defaults).collect())),
+            ("-without-", change(defaults.difference(&own).collect())),
         ] {
             if !parts.is_empty() {
                 write!(f, "{label}{}", joined(&parts, "+"))?;
@@ -199,7 +199,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_team_is_read_from_the_word_it_is_written_as() {
+    fn every_team_is_parsed_from_the_label_it_is_printed_as() {
         let ablations = MatchTeam::ablations();
         assert_eq!(ablations.len(), MatchTeam::all_parts().len());
         let none = MatchTeam { tactics: Tactics::NONE, cases: false, ..MatchTeam::ours() };
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_says_what_differs_from_the_usual_team() {
+    fn a_label_names_the_parts_that_differ_from_the_default_team() {
         let changed = Tactics { second_level: !Tactics::default().second_level, ..Tactics::default() };
         let label = MatchTeam { tactics: changed, ..MatchTeam::ours() }.to_string();
         assert!(matches!(&*label, "ours-without-second-level" | "ours-with-second-level"), "{label}");
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn no_team_of_that_name_is_reported_with_those_there_are() {
+    fn an_unknown_team_is_refused_with_the_list_of_known_ones() {
         for label in
             ["", "best", "ours-", "ours-with-", "ours-with-luck", "ours-without-luck", "zone-with-coerce"]
         {

@@ -4,8 +4,8 @@
 //! ```text
 //! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes, effects ─► matches.json, text tables, plots
 //! ```
-//! Shards, files, resuming and merging are [`crate::evaluation`]'s: equal plans give equal bytes for any
-//! number of threads, shards and interrupts.
+//! Shards, files, resuming and merging are [`crate::store`]'s: equal plans give equal bytes for any number of
+//! threads, shards and interrupts.
 
 mod calibration;
 mod case_table;
@@ -19,9 +19,6 @@ mod passes;
 mod plan;
 mod plot;
 mod row;
-
-use std::ops::ControlFlow;
-use std::path::Path;
 
 use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::NativeBackend;
@@ -41,9 +38,9 @@ pub use paper::{PAPER, PAPER_PASSES, PaperGame, PaperPasses};
 pub use passes::{Kicked, Passes, Share, Tenth};
 pub use plan::{MatchPlan, Pairing, Planned};
 pub use plot::plot;
-pub use row::MatchRow;
+pub use row::{MatchRow, MatchSide};
 
-use crate::evaluation::{Difference, EvaluationError, RunProgress, Shard, play_open};
+use crate::store::{Difference, EvaluationError, Experiment, StoredExperiment};
 use arena::CaseNames;
 use arena::game::{GameConfig, NoWatcher, play};
 
@@ -69,7 +66,7 @@ pub struct MatchIdentity {
     pub program: String,
     /// Hash of the case base, 8 hexadecimal digits.
     pub case_base: String,
-    /// The named settings of retrieval that are not as usual, name and value.
+    /// Settings of retrieval that are not at their defaults, name and value.
     pub settings: Vec<(String, String)>,
     /// All matches of the evaluation, of all shards.
     pub plan: MatchPlan,
@@ -105,17 +102,6 @@ impl MatchIdentity {
 }
 
 impl Matches {
-    /// The identity that its files carry.
-    pub fn identity(&self) -> MatchIdentity {
-        let settings = self.settings.describe();
-        MatchIdentity {
-            program: self.program.clone(),
-            case_base: format!("{:08x}", self.base.hash()),
-            settings: settings.map(|(name, value)| (name.to_owned(), value.to_string())).collect(),
-            plan: self.plan.clone(),
-        }
-    }
-
     /// A match of the plan, ready to be played.
     pub fn config(&self, planned: &Planned) -> Result<GameConfig, EvaluationError> {
         let league = self.plan.league().ok_or(EvaluationError::Nothing)?;
@@ -136,24 +122,33 @@ impl Matches {
         }
         Ok(config)
     }
+}
 
-    /// Plays the match with this number.
-    pub fn play(&self, number: usize) -> Result<MatchRow, EvaluationError> {
-        let planned = self.plan.get(number).ok_or(EvaluationError::Nothing)?;
-        let report = play(&self.config(&planned)?, &mut NativeBackend::new(self.base), &mut NoWatcher)
-            .map_err(|error| EvaluationError::Match { number, error })?;
-        Ok(MatchRow::new(&planned, &report))
+impl Experiment for Matches {
+    type Job = Planned;
+    type Row = MatchRow;
+    type Error = EvaluationError;
+
+    fn jobs(&self) -> Result<Vec<Planned>, EvaluationError> {
+        Ok((0..self.plan.len()).filter_map(|number| self.plan.get(number)).collect())
     }
 
-    /// Plays the matches of a shard that are missing in `file`, on all threads of the current rayon pool;
-    /// returns its rows in the plan's order. As [`crate::evaluation::Evaluation::play_shard`].
-    pub fn play_shard(
-        &self,
-        shard: Shard,
-        file: &Path,
-        progress: &(dyn Fn(RunProgress) -> ControlFlow<()> + Sync),
-    ) -> Result<Vec<MatchRow>, EvaluationError> {
-        play_open(&self.identity(), shard, file, progress, |number| self.play(number))
+    fn play(&self, planned: &Planned) -> Result<MatchRow, EvaluationError> {
+        let report = play(&self.config(planned)?, &mut NativeBackend::new(self.base), &mut NoWatcher)
+            .map_err(|error| EvaluationError::Match { number: planned.number, error })?;
+        Ok(MatchRow::new(planned, &report))
+    }
+}
+
+impl StoredExperiment for Matches {
+    fn identity(&self) -> MatchIdentity {
+        let settings = self.settings.describe();
+        MatchIdentity {
+            program: self.program.clone(),
+            case_base: format!("{:08x}", self.base.hash()),
+            settings: settings.map(|(name, value)| (name.to_owned(), value.to_string())).collect(),
+            plan: self.plan.clone(),
+        }
     }
 }
 

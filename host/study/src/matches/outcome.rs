@@ -1,6 +1,7 @@
 //! `outcome`: results of the matches of two teams. Means a match with Student's 95 % intervals, and the
 //! paper's ratios (Biswas et al. 2014 §6).
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use host::strategy::Team;
@@ -10,7 +11,7 @@ use serde::Serialize;
 use super::match_team::MatchTeam;
 use super::passes::{self, CONFIDENCE, Passes, counted};
 use super::plan::MatchPlan;
-use super::row::MatchRow;
+use super::row::{MatchRow, MatchSide};
 use crate::statistics::{Sample, paired, student};
 use arena::ledger::CaseTable;
 
@@ -79,13 +80,13 @@ pub struct Outcome {
     pub losses: [Option<Estimate>; 2],
     /// Share of the match with the ball in play.
     pub ball_in_play: Option<Estimate>,
-    /// How possessions ended, kicks, shots and left balls, all matches, own and theirs.
+    /// Ends of possessions, kicks, shots and left balls, all matches, own and theirs.
     pub attack: [BTreeMap<String, u32>; 2],
     /// Passes of restarts, planned free kicks and P(we have it) against observed shares, own and theirs.
     pub restarts: [Passes; 2],
     /// Offences by kind, all matches, own and theirs.
     pub fouls: [BTreeMap<String, u32>; 2],
-    /// What became of every case, all matches, own and theirs.
+    /// Plays of every case and what followed, all matches, own and theirs.
     pub cases: [CaseTable; 2],
 }
 
@@ -104,68 +105,75 @@ pub fn outcomes(plan: &MatchPlan, rows: &[MatchRow]) -> Vec<Outcome> {
 }
 
 fn outcome(own: MatchTeam, opponent: MatchTeam, rows: &[&MatchRow]) -> Outcome {
-    let mean = |of: fn(&MatchRow) -> f64| Estimate::of(rows.iter().map(|row| of(row)), f64::INFINITY);
-    let ratio =
-        |of: fn(&MatchRow) -> Option<f64>| Estimate::of(rows.iter().filter_map(|row| of(row)), f64::INFINITY);
-    let share = |of: fn(&MatchRow) -> Option<f64>| Estimate::of(rows.iter().filter_map(|row| of(row)), 1.0);
-    let both = |ours: fn(&MatchRow) -> u32, theirs: fn(&MatchRow) -> u32| {
-        [ours, theirs].map(|of| Estimate::of(rows.iter().map(|row| f64::from(of(row))), f64::INFINITY))
-    };
-    let total = |of: fn(&MatchRow) -> u32| rows.iter().map(|row| of(row)).sum::<u32>();
-    let ends = |end: std::cmp::Ordering| {
-        rows.iter().filter(|row| row.goals.cmp(&row.goals_against) == end).count() as u32
-    };
-    let summed = |of: fn(&MatchRow) -> &str| {
-        let mut all = BTreeMap::new();
-        for (kind, n) in rows.iter().flat_map(|row| counted(of(row))) {
-            *all.entry(kind.to_owned()).or_default() += n;
-        }
-        all
-    };
-    let cases = |of: fn(&MatchRow) -> &str| {
-        let mut all = CaseTable::default();
-        for row in rows {
-            all.merge(&CaseTable::read(of(row)));
-        }
-        all
-    };
-    let differences = Sample::of(rows.iter().map(|row| f64::from(row.goals) - f64::from(row.goals_against)));
-    let (shots, against) = (total(|row| row.shots), total(|row| row.shots_against));
+    let differences = Sample::of(rows.iter().map(|row| row.ahead(|side| side.goals)));
+    let [shots, against] = totals(rows, |side| side.shots);
+    let [goals_for, goals_against] = means(rows, |side| side.goals);
     Outcome {
         own,
         opponent,
         matches: rows.len() as u32,
-        won_drawn_lost: [
-            ends(std::cmp::Ordering::Greater),
-            ends(std::cmp::Ordering::Equal),
-            ends(std::cmp::Ordering::Less),
-        ],
-        goals: [total(|row| row.goals), total(|row| row.goals_against)],
-        goals_for: mean(|row| f64::from(row.goals)),
-        goals_against: mean(|row| f64::from(row.goals_against)),
+        won_drawn_lost: [Ordering::Greater, Ordering::Equal, Ordering::Less].map(|end| ended(rows, end)),
+        goals: totals(rows, |side| side.goals),
+        goals_for,
+        goals_against,
         goals_p: differences.and_then(paired).map(|test| test.p),
-        offence_ratio: ratio(MatchRow::offence_ratio),
-        attack_ratio: ratio(MatchRow::attack_ratio),
+        offence_ratio: Estimate::of(rows.iter().filter_map(|row| row.offence_ratio()), f64::INFINITY),
+        attack_ratio: Estimate::of(rows.iter().filter_map(|row| row.attack_ratio()), f64::INFINITY),
         attack_ratio_of_all: (against > 0).then(|| f64::from(shots) / f64::from(against)),
-        shots: both(|row| row.shots, |row| row.shots_against),
-        chances: both(|row| row.chances, |row| row.chances_against),
-        possession: share(MatchRow::possession),
-        passes: both(|row| row.passes, |row| row.passes_against),
-        losses: both(|row| row.losses, |row| row.losses_against),
-        ball_in_play: share(|row| Some(f64::from(row.ball_in_play))),
-        attack: [summed(|row| &row.attack), summed(|row| &row.attack_against)],
+        shots: means(rows, |side| side.shots),
+        chances: means(rows, |side| side.chances),
+        possession: Estimate::of(rows.iter().filter_map(|row| row.possession()), 1.0),
+        passes: means(rows, |side| side.passes),
+        losses: means(rows, |side| side.losses),
+        ball_in_play: Estimate::of(rows.iter().map(|row| f64::from(row.ball_in_play)), 1.0),
+        attack: summed(rows, |side| &side.attack),
         restarts: played(rows).map(|play| Passes::of(&play)),
-        fouls: [summed(|row| &row.fouls), summed(|row| &row.fouls_against)],
-        cases: [cases(|row| &row.cases), cases(|row| &row.cases_against)],
+        fouls: summed(rows, |side| &side.fouls),
+        cases: [0, 1].map(|side| cases(rows, side)),
     }
+}
+
+/// Mean of a count a match, of both teams.
+fn means(rows: &[&MatchRow], count: fn(&MatchSide) -> u32) -> [Option<Estimate>; 2] {
+    [0, 1].map(|side| Estimate::of(rows.iter().map(|row| f64::from(count(&row.sides[side]))), f64::INFINITY))
+}
+
+/// Sum of a count over all matches, of both teams.
+fn totals(rows: &[&MatchRow], count: fn(&MatchSide) -> u32) -> [u32; 2] {
+    [0, 1].map(|side| rows.iter().map(|row| count(&row.sides[side])).sum())
+}
+
+/// Number of matches in which the first team's goals compare so with its opponent's.
+fn ended(rows: &[&MatchRow], end: Ordering) -> u32 {
+    rows.iter().filter(|row| row.sides[0].goals.cmp(&row.sides[1].goals) == end).count() as u32
+}
+
+/// Sum of the counts of a column over all matches by kind, of both teams.
+fn summed(rows: &[&MatchRow], column: fn(&MatchSide) -> &str) -> [BTreeMap<String, u32>; 2] {
+    [0, 1].map(|side| {
+        let mut all = BTreeMap::new();
+        for (kind, n) in rows.iter().flat_map(|row| counted(column(&row.sides[side]))) {
+            *all.entry(kind.to_owned()).or_default() += n;
+        }
+        all
+    })
+}
+
+/// Plays of a team's cases and what followed, over all matches.
+fn cases(rows: &[&MatchRow], side: usize) -> CaseTable {
+    let mut all = CaseTable::default();
+    for row in rows {
+        all.merge(&CaseTable::read(&row.sides[side].cases));
+    }
+    all
 }
 
 /// Counts of both sides' hosts, over all matches.
 fn played(rows: &[&MatchRow]) -> [PlayCounters; 2] {
     let mut sums = [PlayCounters::default(); 2];
     for row in rows {
-        for (sum, more) in sums.iter_mut().zip(row.play()) {
-            passes::add(sum, &more);
+        for (sum, side) in sums.iter_mut().zip(&row.sides) {
+            passes::add(sum, &side.play());
         }
     }
     sums
@@ -176,9 +184,9 @@ fn played(rows: &[&MatchRow]) -> [PlayCounters; 2] {
 pub fn our_passes(rows: &[MatchRow]) -> Passes {
     let mut sum = PlayCounters::default();
     for row in rows {
-        for (side, more) in [row.own, row.opponent].into_iter().zip(row.play()) {
-            if side.team == Team::Ours {
-                passes::add(&mut sum, &more);
+        for (team, side) in [row.own, row.opponent].into_iter().zip(&row.sides) {
+            if team.team == Team::Ours {
+                passes::add(&mut sum, &side.play());
             }
         }
     }

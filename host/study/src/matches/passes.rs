@@ -119,7 +119,7 @@ pub struct Kicked {
     pub kick: &'static str,
     /// Started, kicked or not.
     pub ordered: u32,
-    /// Of those that were kicked, those that the receiver or another teammate received.
+    /// Passes that the receiver or another teammate received, of those that were kicked.
     pub arrived: Share,
     /// Number of passes with each fate.
     pub fates: Fates,
@@ -139,7 +139,7 @@ pub struct Tenth {
 /// All passes of restarts of one side of a pair.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Passes {
-    /// By kind of kick.
+    /// Passes by kind of kick.
     pub kinds: Vec<Kicked>,
     /// Free kicks by the Coerce and Attack Planner.
     pub cap: CapCounters,

@@ -41,7 +41,7 @@ pub struct MatchPlan {
 /// A match of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Planned {
-    /// Its number in the plan, from 0.
+    /// Number in the plan, from 0.
     pub number: usize,
     /// The pair of teams.
     pub pairing: Pairing,
@@ -67,10 +67,11 @@ impl MatchPlan {
 
     /// Each of these against each other.
     pub fn round_robin(teams: &[MatchTeam]) -> Vec<Pairing> {
-        let pairs = |(i, &own): (usize, &MatchTeam)| {
-            teams[i + 1..].iter().map(move |&opponent| Pairing { own, opponent }).collect::<Vec<_>>()
-        };
-        teams.iter().enumerate().flat_map(pairs).collect()
+        let mut pairings = Vec::new();
+        for (i, &own) in teams.iter().enumerate() {
+            pairings.extend(teams[i + 1..].iter().map(|&opponent| Pairing { own, opponent }));
+        }
+        pairings
     }
 
     /// Number of matches, over all pairs.

@@ -1,5 +1,6 @@
-//! `row`: one row of `matches.csv`: the two teams, and every measure of both sides. s; `own` is the first of
-//! the pair.
+//! `row`: one row of `matches.csv`: the two teams, and every measure of both sides.
+
+use std::collections::BTreeMap;
 
 use host::strategy::counters::{CapCounters, PlayCounters};
 use serde::{Deserialize, Serialize};
@@ -8,13 +9,14 @@ use super::MatchIdentity;
 use super::match_team::MatchTeam;
 use super::passes;
 use super::plan::Planned;
-use crate::evaluation::{Difference, Entry};
-use arena::game::{GameReport, PerTeam};
+use crate::store::{Difference, Row};
+use arena::game::{GameReport, TeamReport};
 
 /// Identity and measures of one match.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Line", into = "Line")]
 pub struct MatchRow {
-    /// Its number in the plan, from 0.
+    /// Number in the plan, from 0.
     pub number: usize,
     /// The team whose numbers come first.
     pub own: MatchTeam,
@@ -24,183 +26,211 @@ pub struct MatchRow {
     pub own_is_blue: bool,
     /// Seed that replays it.
     pub seed: u64,
-    /// Goals of the first team.
-    pub goals: u32,
-    /// Goals of the opponents.
-    pub goals_against: u32,
     /// Share of the match in which the ball was in play.
     pub ball_in_play: f32,
-    /// Seconds in play with the ball in the opponents' half.
-    pub their_half_s: f32,
-    /// Seconds in play with the ball in the own half.
-    pub own_half_s: f32,
-    /// Shots at the goal.
-    pub shots: u32,
-    /// Shots of the opponents at the goal.
-    pub shots_against: u32,
-    /// Shots that a keeper had to stop, that hit a post, or went in.
-    pub chances: u32,
-    /// Such shots of the opponents.
-    pub chances_against: u32,
-    /// Seconds with the ball.
-    pub possession_s: f32,
-    /// Seconds of the opponents with the ball.
-    pub possession_against_s: f32,
-    /// Number of passes that arrived.
-    pub passes: u32,
-    /// Number of the opponents' passes that arrived.
-    pub passes_against: u32,
-    /// Balls lost to the opponents.
-    pub losses: u32,
-    /// Balls that the opponents lost.
-    pub losses_against: u32,
-    /// How possessions ended, where kicks went, what shots were worth, and left balls: `end.shot:3
-    /// kick.2-3/4-5/team:2 shot.volley:1 left-ball:1`.
-    pub attack: String,
-    /// The same of the opponents.
-    pub attack_against: String,
-    /// Passes of restarts as the host followed them, by kick and fate: `flat.received:3 chip.out:1`.
-    pub restart_passes: String,
-    /// Passes of the opponents' restarts, in the same form.
-    pub restart_passes_against: String,
-    /// Their P(we have it) by tenths: tenth, passes, sum of P(we have it), received, as in `9:12:11.2:10`.
-    pub calibration: String,
-    /// P(we have it) of the opponents' passes, in the same form.
-    pub calibration_against: String,
-    /// Passes of the Coerce and Attack Planner that left.
-    pub cap_attempts: u32,
-    /// … that arrived at a teammate.
-    pub cap_successes: u32,
-    /// … whose receiver had coerced an opponent before.
-    pub cap_reuses: u32,
-    /// … of those, that arrived.
-    pub cap_reuse_successes: u32,
-    /// The opponents' that left.
-    pub cap_attempts_against: u32,
-    /// … that arrived at a teammate.
-    pub cap_successes_against: u32,
-    /// … whose receiver had coerced an opponent before.
-    pub cap_reuses_against: u32,
-    /// … of those, that arrived.
-    pub cap_reuse_successes_against: u32,
-    /// Number of changes of a robot's role within a phase.
-    pub role_changes: u32,
-    /// Number of such changes of the opponents' robots.
-    pub role_changes_against: u32,
-    /// Offences: `kind:number`, a blank between two.
-    pub fouls: String,
-    /// Offences of the opponents, in the same form.
-    pub fouls_against: String,
+    /// Measures of the first team and of its opponent.
+    pub sides: [MatchSide; 2],
     /// Equal for equal matches.
     pub trace_hash: String,
-    /// What became of every case, as [`CaseTable::column`](arena::ledger::CaseTable::column) writes it.
+}
+
+/// Measures of one team in a match.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MatchSide {
+    /// Goals of the team.
+    pub goals: u32,
+    /// Seconds in play with the ball in the other team's half.
+    pub other_half_s: f32,
+    /// Shots at the goal.
+    pub shots: u32,
+    /// Shots that a keeper had to stop, that hit a post, or went in.
+    pub chances: u32,
+    /// Seconds with the ball.
+    pub possession_s: f32,
+    /// Number of passes that arrived.
+    pub passes: u32,
+    /// Balls lost to the other team.
+    pub losses: u32,
+    /// Ends of possessions, where kicks went, what shots were worth, and left balls: `end.shot:3
+    /// kick.2-3/4-5/team:2 shot.volley:1 left-ball:1`.
+    pub attack: String,
+    /// Passes of restarts as the host followed them, by kick and fate: `flat.received:3 chip.out:1`.
+    pub restart_passes: String,
+    /// Their P(we have it) by tenths: tenth, passes, sum of P(we have it), received, as in `9:12:11.2:10`.
+    pub calibration: String,
+    /// Passes of the Coerce and Attack Planner.
+    pub cap: CapCounters,
+    /// Number of changes of a robot's role within a phase.
+    pub role_changes: u32,
+    /// Offences: `kind:number`, a blank between two.
+    pub fouls: String,
+    /// Plays of every case and what followed, in the form of
+    /// [`CaseTable::column`](arena::ledger::CaseTable::column).
     pub cases: String,
-    /// The same of the opponents' cases.
-    pub cases_against: String,
+}
+
+/// Makes [`Line`] of a table of columns: name, type and place in a row or in one of its sides.
+macro_rules! columns {
+    (($row:ident, $own:ident, $theirs:ident) $($column:ident: $type:ty = $place:expr;)*) => {
+        /// A row as the file has it.
+        #[derive(Clone, Serialize, Deserialize)]
+        struct Line {
+            $($column: $type,)*
+        }
+
+        impl From<MatchRow> for Line {
+            fn from($row: MatchRow) -> Self {
+                let [$own, $theirs] = $row.sides;
+                Self { $($column: $place,)* }
+            }
+        }
+
+        impl From<Line> for MatchRow {
+            fn from(line: Line) -> Self {
+                let [mut $own, mut $theirs] = [MatchSide::default(), MatchSide::default()];
+                let mut $row = Self::empty();
+                $($place = line.$column;)*
+                $row.sides = [$own, $theirs];
+                $row
+            }
+        }
+    };
+}
+
+columns! {
+    (row, own, theirs)
+    number: usize = row.number;
+    own: MatchTeam = row.own;
+    opponent: MatchTeam = row.opponent;
+    own_is_blue: bool = row.own_is_blue;
+    seed: u64 = row.seed;
+    goals: u32 = own.goals;
+    goals_against: u32 = theirs.goals;
+    ball_in_play: f32 = row.ball_in_play;
+    their_half_s: f32 = own.other_half_s;
+    own_half_s: f32 = theirs.other_half_s;
+    shots: u32 = own.shots;
+    shots_against: u32 = theirs.shots;
+    chances: u32 = own.chances;
+    chances_against: u32 = theirs.chances;
+    possession_s: f32 = own.possession_s;
+    possession_against_s: f32 = theirs.possession_s;
+    passes: u32 = own.passes;
+    passes_against: u32 = theirs.passes;
+    losses: u32 = own.losses;
+    losses_against: u32 = theirs.losses;
+    attack: String = own.attack;
+    attack_against: String = theirs.attack;
+    restart_passes: String = own.restart_passes;
+    restart_passes_against: String = theirs.restart_passes;
+    calibration: String = own.calibration;
+    calibration_against: String = theirs.calibration;
+    cap_attempts: u32 = own.cap.attempts;
+    cap_successes: u32 = own.cap.successes;
+    cap_reuses: u32 = own.cap.reuses;
+    cap_reuse_successes: u32 = own.cap.reuse_successes;
+    cap_attempts_against: u32 = theirs.cap.attempts;
+    cap_successes_against: u32 = theirs.cap.successes;
+    cap_reuses_against: u32 = theirs.cap.reuses;
+    cap_reuse_successes_against: u32 = theirs.cap.reuse_successes;
+    role_changes: u32 = own.role_changes;
+    role_changes_against: u32 = theirs.role_changes;
+    fouls: String = own.fouls;
+    fouls_against: String = theirs.fouls;
+    trace_hash: String = row.trace_hash;
+    cases: String = own.cases;
+    cases_against: String = theirs.cases;
 }
 
 impl MatchRow {
     /// The row of a played match.
     pub(super) fn new(planned: &Planned, report: &GameReport) -> Self {
-        fn sides<T>(blue_first: bool, of: &PerTeam<T>) -> (&T, &T) {
-            if blue_first { (&of.blue, &of.yellow) } else { (&of.yellow, &of.blue) }
-        }
-        let blue = planned.own_is_blue;
-        let (own, theirs) = sides(blue, &report.metrics);
-        let (goals, goals_against) = sides(blue, &report.score);
-        let (fouls, fouls_against) = sides(blue, &report.fouls);
+        let [blue, yellow] = [
+            MatchSide::new(&report.metrics.blue, report.score.blue, &report.fouls.blue),
+            MatchSide::new(&report.metrics.yellow, report.score.yellow, &report.fouls.yellow),
+        ];
         Self {
             number: planned.number,
             own: planned.pairing.own,
             opponent: planned.pairing.opponent,
-            own_is_blue: blue,
+            own_is_blue: planned.own_is_blue,
             seed: planned.seed,
-            goals: *goals,
-            goals_against: *goals_against,
             ball_in_play: report.ball_in_play,
-            their_half_s: own.ball_in_their_half_s,
-            own_half_s: theirs.ball_in_their_half_s,
-            shots: own.shots,
-            shots_against: theirs.shots,
-            chances: own.chances,
-            chances_against: theirs.chances,
-            possession_s: own.possession_s,
-            possession_against_s: theirs.possession_s,
-            passes: own.passes,
-            passes_against: theirs.passes,
-            losses: own.losses,
-            losses_against: theirs.losses,
-            attack: listed(own.attack.named()),
-            attack_against: listed(theirs.attack.named()),
-            restart_passes: passes::fates_column(&own.play.passes),
-            restart_passes_against: passes::fates_column(&theirs.play.passes),
-            calibration: passes::calibration_column(&own.play.passes),
-            calibration_against: passes::calibration_column(&theirs.play.passes),
-            cap_attempts: own.play.cap.attempts,
-            cap_successes: own.play.cap.successes,
-            cap_reuses: own.play.cap.reuses,
-            cap_reuse_successes: own.play.cap.reuse_successes,
-            cap_attempts_against: theirs.play.cap.attempts,
-            cap_successes_against: theirs.play.cap.successes,
-            cap_reuses_against: theirs.play.cap.reuses,
-            cap_reuse_successes_against: theirs.play.cap.reuse_successes,
-            role_changes: own.play.role_changes,
-            role_changes_against: theirs.play.role_changes,
-            fouls: listed(fouls.iter().map(|(kind, n)| (*kind, *n))),
-            fouls_against: listed(fouls_against.iter().map(|(kind, n)| (*kind, *n))),
+            sides: if planned.own_is_blue { [blue, yellow] } else { [yellow, blue] },
             trace_hash: report.trace_hash.clone(),
-            cases: own.cases.column(),
-            cases_against: theirs.cases.column(),
         }
+    }
+
+    fn empty() -> Self {
+        Self {
+            number: 0,
+            own: MatchTeam::ours(),
+            opponent: MatchTeam::ours(),
+            own_is_blue: true,
+            seed: 0,
+            ball_in_play: 0.0,
+            sides: Default::default(),
+            trace_hash: String::new(),
+        }
+    }
+
+    /// Difference of a count of the two teams, the first less its opponent.
+    pub(super) fn ahead(&self, count: fn(&MatchSide) -> u32) -> f64 {
+        let [own, theirs] = self.sides.each_ref().map(|side| f64::from(count(side)));
+        own - theirs
     }
 
     /// The paper's offence ratio (§6): time of the ball in their half over that in the own; `None` where it
     /// never was in the own.
     pub fn offence_ratio(&self) -> Option<f64> {
-        (self.own_half_s > 0.0).then(|| f64::from(self.their_half_s) / f64::from(self.own_half_s))
+        let [own, theirs] = self.sides.each_ref().map(|side| f64::from(side.other_half_s));
+        (theirs > 0.0).then(|| own / theirs)
     }
 
     /// The paper's attack ratio (§6): own shots over the opponents'; `None` where those never shot.
     pub fn attack_ratio(&self) -> Option<f64> {
-        (self.shots_against > 0).then(|| f64::from(self.shots) / f64::from(self.shots_against))
-    }
-
-    /// Counts of the two hosts: own, theirs.
-    pub fn play(&self) -> [PlayCounters; 2] {
-        let own = CapCounters {
-            attempts: self.cap_attempts,
-            successes: self.cap_successes,
-            reuses: self.cap_reuses,
-            reuse_successes: self.cap_reuse_successes,
-        };
-        let theirs = CapCounters {
-            attempts: self.cap_attempts_against,
-            successes: self.cap_successes_against,
-            reuses: self.cap_reuses_against,
-            reuse_successes: self.cap_reuse_successes_against,
-        };
-        [
-            PlayCounters {
-                passes: passes::read(&self.restart_passes, &self.calibration),
-                cap: own,
-                role_changes: self.role_changes,
-            },
-            PlayCounters {
-                passes: passes::read(&self.restart_passes_against, &self.calibration_against),
-                cap: theirs,
-                role_changes: self.role_changes_against,
-            },
-        ]
+        let [own, theirs] = self.sides.each_ref().map(|side| f64::from(side.shots));
+        (theirs > 0.0).then(|| own / theirs)
     }
 
     /// Own share of the time in which a team had the ball.
     pub fn possession(&self) -> Option<f64> {
-        let both = f64::from(self.possession_s) + f64::from(self.possession_against_s);
-        (both > 0.0).then(|| f64::from(self.possession_s) / both)
+        let [own, theirs] = self.sides.each_ref().map(|side| f64::from(side.possession_s));
+        (own + theirs > 0.0).then(|| own / (own + theirs))
     }
 }
 
-impl Entry for MatchRow {
+impl MatchSide {
+    fn new(metrics: &TeamReport, goals: u32, fouls: &BTreeMap<&'static str, u32>) -> Self {
+        Self {
+            goals,
+            other_half_s: metrics.ball_in_their_half_s,
+            shots: metrics.shots,
+            chances: metrics.chances,
+            possession_s: metrics.possession_s,
+            passes: metrics.passes,
+            losses: metrics.losses,
+            attack: listed(metrics.attack.named()),
+            restart_passes: passes::fates_column(&metrics.play.passes),
+            calibration: passes::calibration_column(&metrics.play.passes),
+            cap: metrics.play.cap,
+            role_changes: metrics.play.role_changes,
+            fouls: listed(fouls.iter().map(|(kind, n)| (*kind, *n))),
+            cases: metrics.cases.column(),
+        }
+    }
+
+    /// Counts of the team's host.
+    pub fn play(&self) -> PlayCounters {
+        PlayCounters {
+            passes: passes::read(&self.restart_passes, &self.calibration),
+            cap: self.cap,
+            role_changes: self.role_changes,
+        }
+    }
+}
+
+impl Row for MatchRow {
     type Identity = MatchIdentity;
     const MARK: &'static str = "# onetwo matches 4 ";
     fn number(&self) -> usize {

@@ -2,13 +2,15 @@
 //! right.
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use hil_sim::small_size::worlds::{WorldChoice, WorldPlan};
 use host::strategy::Team;
+use host::strategy::counters::CapCounters;
 
 use super::*;
-use crate::evaluation::{csv_hash, merge, read, to_csv};
+use crate::store::{RunProgress, Shard, csv_hash, in_words, merge, read, to_csv};
 
 const GO_ON: &(dyn Fn(RunProgress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
 
@@ -76,7 +78,7 @@ fn threads_shards_and_interrupts_change_no_byte() {
 }
 
 #[test]
-fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its_world() {
+fn evaluations_of_different_worlds_differ_and_a_plan_keeps_its_world() {
     let of = |world: WorldPlan| {
         let plan = MatchPlan {
             seed: 4,
@@ -97,9 +99,8 @@ fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its
     };
     let named: WorldPlan = "grsim".parse().unwrap();
     let (nominal, grsim, random) = (of(WorldPlan::default()), of(named), of(WorldPlan::RandomPerMatch));
-    let differences = |own: &Matches, other: &Matches| {
-        crate::evaluation::in_words(&own.identity().differences(&other.identity()))
-    };
+    let differences =
+        |own: &Matches, other: &Matches| in_words(&own.identity().differences(&other.identity()));
     assert_eq!(differences(&nominal, &grsim), "world nominal, not grsim");
     assert_eq!(differences(&grsim, &random), "world grsim, not random");
     let planned = random.plan.get(1).unwrap();
@@ -121,45 +122,50 @@ fn row(number: usize, goals: [u32; 2], halves: [f32; 2], shots: [u32; 2]) -> Mat
         opponent: Team::Zone.into(),
         own_is_blue: true,
         seed: 1,
-        goals: goals[0],
-        goals_against: goals[1],
         ball_in_play: 0.5,
-        their_half_s: halves[0],
-        own_half_s: halves[1],
-        shots: shots[0],
-        shots_against: shots[1],
-        chances: 0,
-        chances_against: 0,
-        possession_s: 30.0,
-        possession_against_s: 10.0,
-        passes: 0,
-        passes_against: 0,
-        losses: 0,
-        losses_against: 0,
-        attack: "end.shot:3 end.tackle:1 kick.2-3/1-2/team:3 kick.2-3/1-2/lost:1 shot.open:2 shot.goal:1 left-ball:1"
-            .to_owned(),
-        attack_against: String::new(),
-        restart_passes: "flat.received:3 flat.out:1".to_owned(),
-        restart_passes_against: "chip.received:1".to_owned(),
-        calibration: "9:4:3.6:3".to_owned(),
-        calibration_against: "4:1:0.45:1".to_owned(),
-        cap_attempts: 2,
-        cap_successes: 1,
-        cap_reuses: 1,
-        cap_reuse_successes: 0,
-        cap_attempts_against: 0,
-        cap_successes_against: 0,
-        cap_reuses_against: 0,
-        cap_reuse_successes_against: 0,
-        role_changes: 5,
-        role_changes_against: 0,
-        fouls: "bot_pushed_bot:2".to_owned(),
-        fouls_against: String::new(),
+        sides: [
+            MatchSide {
+                goals: goals[0],
+                other_half_s: halves[0],
+                shots: shots[0],
+                possession_s: 30.0,
+                attack: "end.shot:3 end.tackle:1 kick.2-3/1-2/team:3 kick.2-3/1-2/lost:1 shot.open:2 shot.goal:1 left-ball:1"
+                    .to_owned(),
+                restart_passes: "flat.received:3 flat.out:1".to_owned(),
+                calibration: "9:4:3.6:3".to_owned(),
+                cap: CapCounters { attempts: 2, successes: 1, reuses: 1, reuse_successes: 0 },
+                role_changes: 5,
+                fouls: "bot_pushed_bot:2".to_owned(),
+                cases: "center/pass@6:retrieved=2,pass=1,arrived=1,end.finished=1,end.timeout=1,then.goal=1,then.loss=1"
+                    .to_owned(),
+                ..MatchSide::default()
+            },
+            MatchSide {
+                goals: goals[1],
+                other_half_s: halves[1],
+                shots: shots[1],
+                possession_s: 10.0,
+                restart_passes: "chip.received:1".to_owned(),
+                calibration: "4:1:0.45:1".to_owned(),
+                ..MatchSide::default()
+            },
+        ],
         trace_hash: String::new(),
-        cases: "center/pass@6:retrieved=2,pass=1,arrived=1,end.finished=1,end.timeout=1,then.goal=1,then.loss=1"
-            .to_owned(),
-        cases_against: String::new(),
     }
+}
+
+#[test]
+fn a_row_keeps_its_41_columns_and_is_read_as_it_was_written() {
+    let written = row(7, [2, 1], [200.0, 100.5], [6, 2]);
+    let csv = to_csv(std::slice::from_ref(&written)).unwrap();
+    let mut reader = csv::Reader::from_reader(&csv[..]);
+    let columns = reader.headers().unwrap().clone();
+    assert_eq!(columns.len(), 41);
+    let order =
+        ["number", "own", "opponent", "own_is_blue", "seed", "goals", "goals_against", "ball_in_play"];
+    assert_eq!(columns.iter().take(8).collect::<Vec<_>>(), order);
+    let read: MatchRow = reader.deserialize().next().unwrap().unwrap();
+    assert_eq!(read, written);
 }
 
 #[test]
@@ -308,7 +314,7 @@ fn the_same_matches_by_two_programs_are_compared_match_by_match() {
     );
     // Other matches are refused, with what differs.
     let refused = check_same_matches(&identity("1", 5), &identity("2", 6)).unwrap_err();
-    assert_eq!(crate::evaluation::in_words(&refused), "seed 5, not 6");
+    assert_eq!(in_words(&refused), "seed 5, not 6");
 }
 
 #[test]
@@ -344,7 +350,8 @@ fn a_host_retrieves_from_the_library_that_its_robots_have() {
         program: "test".to_owned(),
         names: CaseNames::default(),
     };
-    let retrieved =
-        [0, 1].map(|number| arena::ledger::CaseTable::read(&matches.play(number).unwrap().cases).retrieved);
+    let played = matches.play_all(&|| ()).unwrap();
+    let retrieved: Vec<_> =
+        played.iter().map(|row| arena::ledger::CaseTable::read(&row.sides[0].cases).retrieved).collect();
     assert!(retrieved.iter().sum::<u32>() >= 4, "{retrieved:?}");
 }

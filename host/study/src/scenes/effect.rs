@@ -5,33 +5,23 @@ use serde::Serialize;
 
 use super::{SceneKind, SceneOutcome, ScenePlan, SceneRow};
 use crate::matches::MatchTeam;
-use crate::statistics::{Count, Sample, Test, detectable, mcnemar, paired, student};
+use crate::statistics::{Count, PairedMeans, PairedShares, detectable, student};
 
-/// What is compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SceneMeasure {
-    /// Share of scenes with a shot of ours.
-    Shot,
-    /// Share of scenes with a goal of ours.
-    Goal,
-    /// Goals for less goals against, a scene.
-    NetGoals,
+hil_sim::labels! {
+    /// Measure that is compared.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum SceneMeasure {
+        /// Share of scenes with a shot of ours.
+        Shot = "shot",
+        /// Share of scenes with a goal of ours.
+        Goal = "goal",
+        /// Goals for less goals against, a scene.
+        NetGoals = "goals for − against",
+    }
 }
 
 impl SceneMeasure {
-    /// All of them, in the order of a table.
-    pub const ALL: [Self; 3] = [Self::Shot, Self::Goal, Self::NetGoals];
-
-    /// Its name.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Shot => "shot",
-            Self::Goal => "goal",
-            Self::NetGoals => "goals for − against",
-        }
-    }
-
     fn of(self, outcome: SceneOutcome) -> f64 {
         let one = |happened: bool| f64::from(u8::from(happened));
         match self {
@@ -45,13 +35,13 @@ impl SceneMeasure {
 /// Effect of a part on one measure, in scenes of one kind against one opponent, or against all.
 #[derive(Clone, Debug, Serialize)]
 pub struct SceneEffect {
-    /// How the scenes begin.
+    /// Kind of start.
     pub kind: SceneKind,
     /// The opponent; `None`: all together.
     pub opponent: Option<MatchTeam>,
     /// Name of the part; several with a `+` between.
     pub part: String,
-    /// What is compared.
+    /// Measure that is compared.
     pub measure: SceneMeasure,
     /// Number of pairs in which both sides of the pair came into play.
     pub pairs: u32,
@@ -66,7 +56,7 @@ pub struct SceneEffect {
     /// Smallest difference that a test at 0.05 finds in 8 of 10 such samples: the differences of pairs spread
     /// as these did.
     pub detectable: Option<f64>,
-    /// With the planner: scenes in which its pass left, and those of them with a shot.
+    /// Scenes in which the planner's pass left, and those of them with a shot.
     pub planned: [u32; 2],
 }
 
@@ -76,33 +66,29 @@ pub fn scene_effects(plan: &ScenePlan, rows: &[SceneRow]) -> Vec<SceneEffect> {
     for kind in [SceneKind::FreeKick, SceneKind::OpenPlay] {
         for variant in &plan.variants {
             let Some((part, has)) = variant.part_beside(plan.team) else { continue };
-            let opponents = plan.opponents.iter().copied().map(Some).chain([None]);
-            for opponent in opponents {
-                let pairs = pairs(rows, kind, opponent, *variant, plan.team);
-                let pairs: Vec<_> =
-                    pairs.map(|(varied, base)| if has { (varied, base) } else { (base, varied) }).collect();
-                let of = |measure| effect(measure, &pairs, (kind, opponent, &part));
-                effects.extend(SceneMeasure::ALL.into_iter().filter_map(of));
+            let (with, without) = if has { (*variant, plan.team) } else { (plan.team, *variant) };
+            for opponent in plan.opponents.iter().copied().map(Some).chain([None]) {
+                let [with, without] = [with, without].map(|team| outcomes(rows, kind, opponent, team));
+                let pairs: Vec<_> = with.zip(without).filter(|(a, b)| a.played && b.played).collect();
+                let all = SceneMeasure::ALL.into_iter();
+                effects.extend(all.filter_map(|measure| effect(measure, &pairs, (kind, opponent, &part))));
             }
         }
     }
     effects
 }
 
-/// Outcomes of the same scenes with one team and the other, where both came into play.
-fn pairs(
+/// Outcomes of a team's scenes of one kind against one opponent, or against all, in the plan's order.
+fn outcomes(
     rows: &[SceneRow],
     kind: SceneKind,
     opponent: Option<MatchTeam>,
-    varied: MatchTeam,
-    base: MatchTeam,
-) -> impl Iterator<Item = (SceneOutcome, SceneOutcome)> {
-    let of = move |team: MatchTeam| {
-        rows.iter().filter(move |row| {
-            row.kind == kind && row.team == team && opponent.is_none_or(|opponent| row.opponent == opponent)
-        })
-    };
-    of(varied).zip(of(base)).map(|(a, b)| (a.outcome, b.outcome)).filter(|(a, b)| a.played && b.played)
+    team: MatchTeam,
+) -> impl Iterator<Item = SceneOutcome> {
+    let of_team = rows.iter().filter(move |row| {
+        row.kind == kind && row.team == team && opponent.is_none_or(|opponent| row.opponent == opponent)
+    });
+    of_team.map(|row| row.outcome)
 }
 
 fn effect(
@@ -111,15 +97,12 @@ fn effect(
     (kind, opponent, part): (SceneKind, Option<MatchTeam>, &str),
 ) -> Option<SceneEffect> {
     let values = pairs.iter().map(|&(with, without)| (measure.of(with), measure.of(without)));
-    let differences = Sample::of(values.clone().map(|(with, without)| with - without))?;
-    let n = f64::from(differences.n);
-    let only = |first: bool| {
-        values.clone().filter(|(with, without)| if first { with > without } else { with < without }).count()
-            as u32
-    };
-    let test: Option<Test> = match measure {
-        SceneMeasure::NetGoals => paired(differences),
-        SceneMeasure::Shot | SceneMeasure::Goal => mcnemar(only(true), only(false)),
+    let means = PairedMeans::of(values.clone())?;
+    let test = match measure {
+        SceneMeasure::NetGoals => means.test(),
+        SceneMeasure::Shot | SceneMeasure::Goal => {
+            PairedShares::of(values.map(|(with, without)| (with > 0.0, without > 0.0))).test()
+        }
     };
     let planned = pairs.iter().filter(|(with, _)| with.planned);
     Some(SceneEffect {
@@ -127,12 +110,12 @@ fn effect(
         opponent,
         part: part.to_owned(),
         measure,
-        pairs: differences.n,
-        with: values.clone().map(|(with, _)| with).sum::<f64>() / n,
-        without: values.map(|(_, without)| without).sum::<f64>() / n,
-        interval: student(differences, CONFIDENCE).map(|interval| [interval.low, interval.high]),
+        pairs: means.differences.n,
+        with: means.with.mean,
+        without: means.without.mean,
+        interval: student(means.differences, CONFIDENCE).map(|interval| [interval.low, interval.high]),
         p: test.map(|test| test.p),
-        detectable: detectable(differences),
+        detectable: detectable(means.differences),
         planned: [planned.clone().count() as u32, planned.filter(|(with, _)| with.shot).count() as u32],
     })
 }

@@ -18,7 +18,6 @@ mod table;
 
 use hil_sim::small_size::worlds::WorldChoice;
 use host::strategy::Team;
-use rayon::prelude::*;
 use rules::{Colour, League};
 use serde::Serialize;
 
@@ -29,6 +28,7 @@ pub use start::SceneStart;
 pub use table::scene_table;
 
 use crate::matches::MatchTeam;
+use crate::store::Experiment;
 use arena::game::{GameConfig, GameError};
 
 /// Time in which a scene is watched, from the moment at which the ball is in play, s: the measure of
@@ -38,23 +38,15 @@ pub const SCENE_S: f64 = 12.0;
 /// Our team.
 const US: Colour = Colour::Blue;
 
-/// How a scene begins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SceneKind {
-    /// Our free kick in the other half.
-    FreeKick,
-    /// The ball in play, with a robot of ours nearest to it.
-    OpenPlay,
-}
-
-impl SceneKind {
-    /// Its name on command lines and in files.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::FreeKick => "free-kick",
-            Self::OpenPlay => "open-play",
-        }
+hil_sim::labels! {
+    /// Kind of start of a scene.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum SceneKind {
+        /// Our free kick in the other half.
+        FreeKick = "free-kick",
+        /// The ball in play, with a robot of ours nearest to it.
+        OpenPlay = "open-play",
     }
 }
 
@@ -79,28 +71,43 @@ pub struct ScenePlan {
     pub opponents: Vec<MatchTeam>,
 }
 
-impl ScenePlan {
-    /// Draws the starts and plays every scene with every team, on all threads of the current rayon pool.
-    pub fn play(&self, on_played: &(dyn Fn() + Sync)) -> Result<Vec<SceneRow>, GameError> {
+/// A scene of a plan, ready to be played.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    kind: SceneKind,
+    opponent: MatchTeam,
+    /// Number among those of its kind and opponent, from 0.
+    number: u32,
+    start: SceneStart,
+    team: MatchTeam,
+}
+
+impl Experiment for ScenePlan {
+    type Job = Scene;
+    type Row = SceneRow;
+    type Error = GameError;
+
+    /// Draws the starts; every scene stands once for each team.
+    fn jobs(&self) -> Result<Vec<Scene>, GameError> {
         let mut jobs = Vec::new();
-        for opponent in &self.opponents {
-            let starts = start::draw(self, *opponent)?;
-            for (kind, number, start) in starts {
+        for opponent in self.opponents.iter().copied() {
+            for (kind, number, start) in start::draw(self, opponent)? {
                 let teams = [self.team].into_iter().chain(self.variants.iter().copied());
-                jobs.extend(teams.map(|team| (kind, *opponent, number, start.clone(), team)));
+                jobs.extend(teams.map(|team| Scene { kind, opponent, number, start: start.clone(), team }));
             }
         }
-        let one =
-            |(kind, opponent, number, start, team): &(SceneKind, MatchTeam, u32, SceneStart, MatchTeam)| {
-                let seed = self.seed_of(*kind, *number);
-                let outcome = play::play(&self.config(*team, *opponent, seed, LONGEST_S), *kind, start)?;
-                on_played();
-                let (kind, opponent, number, team) = (*kind, *opponent, *number, *team);
-                Ok(SceneRow { kind, opponent, number, seed, team, outcome })
-            };
-        jobs.par_iter().map(one).collect()
+        Ok(jobs)
     }
 
+    fn play(&self, scene: &Scene) -> Result<SceneRow, GameError> {
+        let Scene { kind, opponent, number, ref start, team } = *scene;
+        let seed = self.seed_of(kind, number);
+        let outcome = play::play(&self.config(team, opponent, seed, SCENE_S_MAX), kind, start)?;
+        Ok(SceneRow { kind, opponent, number, seed, team, outcome })
+    }
+}
+
+impl ScenePlan {
     /// Number of scenes, each team's counted.
     pub fn len(&self) -> usize {
         (self.free_kicks + self.open_play) as usize * self.opponents.len() * (1 + self.variants.len())
@@ -133,7 +140,7 @@ impl ScenePlan {
 }
 
 /// Longest scene, with the stop and the free kick before it, s.
-const LONGEST_S: f64 = 60.0;
+const SCENE_S_MAX: f64 = 60.0;
 
 #[cfg(test)]
 mod tests;

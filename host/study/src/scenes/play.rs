@@ -10,18 +10,18 @@ use serde::Serialize;
 use super::{SCENE_S, SceneKind, SceneStart, US};
 use arena::game::{Game, GameConfig, GameError, NoWatcher};
 
-/// What became of a scene within [`SCENE_S`], or until the referee stopped play.
+/// Outcome of a scene within [`SCENE_S`], or until the referee stopped play.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SceneOutcome {
     /// The ball came into play: free kicks that nobody takes do not.
     pub played: bool,
-    /// We shot at the goal.
+    /// A shot of ours at the goal.
     pub shot: bool,
-    /// We scored.
+    /// A goal of ours.
     pub goal: bool,
-    /// They shot at ours.
+    /// A shot of theirs at our goal.
     pub shot_against: bool,
-    /// They scored.
+    /// A goal of theirs.
     pub goal_against: bool,
     /// Our pass of the Coerce and Attack Planner left.
     pub planned: bool,
@@ -122,5 +122,5 @@ impl Tally {
 
 /// The referee's first command comes within this time, s.
 const BEGINS_WITHIN_S: f64 = 10.0;
-/// In HALT until both hosts have seen where everything is, s: 30 frames of the cameras.
+/// Time in HALT until both hosts have seen where everything is, s: 30 frames of the cameras.
 const SETTLES_S: f64 = 0.5;

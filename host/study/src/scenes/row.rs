@@ -9,17 +9,17 @@ use crate::matches::MatchTeam;
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(into = "SceneLine")]
 pub struct SceneRow {
-    /// How it begins.
+    /// Kind of start.
     pub kind: SceneKind,
     /// The team against which it is played.
     pub opponent: MatchTeam,
-    /// Its number among those of its kind and opponent, from 0.
+    /// Number among those of its kind and opponent, from 0.
     pub number: u32,
-    /// Its random seed.
+    /// Random seed.
     pub seed: u64,
     /// The team that played it.
     pub team: MatchTeam,
-    /// What became of it.
+    /// Outcome of the scene.
     pub outcome: SceneOutcome,
 }
 

@@ -12,7 +12,7 @@ use super::{SceneKind, ScenePlan, US};
 use crate::matches::MatchTeam;
 use arena::game::{Game, GameError, NoWatcher};
 
-/// Where everything is as a scene begins. Robots stand; in a match they moved.
+/// Start of a scene: places of ball and robots. Robots stand; in a match they moved.
 #[derive(Clone, Debug)]
 pub struct SceneStart {
     /// All robots on the field.

@@ -18,7 +18,7 @@ fn plan(free_kicks: u32, open_play: u32, variants: &[&str]) -> ScenePlan {
 }
 
 #[test]
-fn starts_have_our_robot_nearest_in_open_play_a_lawful_spot_at_free_kicks_and_the_keepers_at_home() {
+fn starts_of_open_play_and_free_kicks_follow_the_rules() {
     let plan = plan(15, 15, &[]);
     let starts = start::draw(&plan, Team::Zone.into()).unwrap();
     assert_eq!(starts.len(), 30);
@@ -60,7 +60,7 @@ fn a_team_beside_itself_differs_in_no_scene_on_any_number_of_threads() {
     plan.variants = vec![plan.team];
     let play = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| plan.play(&|| ())).unwrap()
+        pool.install(|| plan.play_all(&|| ())).unwrap()
     };
     let rows = play(1);
     let outcomes = |rows: &[SceneRow]| rows.iter().map(|row| row.outcome).collect::<Vec<_>>();
@@ -76,7 +76,7 @@ fn a_team_beside_itself_differs_in_no_scene_on_any_number_of_threads() {
 fn the_planner_plays_free_kicks_where_it_is_on_and_none_where_it_is_off() {
     let mut plan = plan(12, 0, &["ours-with-coerce"]);
     plan.opponents = vec![Team::Reactive.into()];
-    let rows = plan.play(&|| ()).unwrap();
+    let rows = plan.play_all(&|| ()).unwrap();
     let planned = |team: MatchTeam| rows.iter().filter(|row| row.team == team && row.outcome.planned).count();
     assert_eq!(planned(plan.team), 0);
     assert!(planned(plan.variants[0]) > 0);

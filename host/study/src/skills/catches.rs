@@ -6,30 +6,30 @@ use hil_sim::small_size::Ball;
 use protocol::host::{Directive, RuleRole};
 use rules::League;
 
-use super::drill::{Judge, Moment, RefereeOrder, Start, State, player, pose};
+use super::drill::{Judge, Moment, Start, State, player, pose};
 use super::places::Places;
 
 /// Our robot in all of these.
 const ROBOT: u8 = 1;
 
-/// For how long, without a break, the robot has had the ball.
+/// Time for which, without a break, the robot has had the ball.
 #[derive(Clone, Copy, Debug, Default)]
 struct Had {
     since: Option<f32>,
 }
 
 impl Had {
-    /// Whether it has had the ball for [`KEEPS`].
+    /// Whether it has had the ball for [`KEPT_FOR_S`].
     fn look(&mut self, moment: &Moment<'_>) -> bool {
         if !moment.has(ROBOT) {
             self.since = None;
             return false;
         }
-        moment.time - *self.since.get_or_insert(moment.time) >= KEEPS
+        moment.time - *self.since.get_or_insert(moment.time) >= KEPT_FOR_S
     }
 }
 
-fn description_of_gap(moment: &Moment<'_>) -> String {
+fn gap_text(moment: &Moment<'_>) -> String {
     match moment.at_dribbler(ROBOT) {
         Some([gap, beside]) => format!("the ball is {gap:.2} m before the dribbler, {beside:.2} m beside it"),
         None => "the robot is gone".to_owned(),
@@ -38,12 +38,11 @@ fn description_of_gap(moment: &Moment<'_>) -> String {
 
 /// Get a ball that rests, rolls, lies at a board or beside an opponent.
 pub(super) struct GetBall {
-    start: Start,
     had: Had,
 }
 
 impl GetBall {
-    pub(super) fn new(league: League, number: u32, seed: u64) -> Self {
+    pub(super) fn new(league: League, number: u32, seed: u64) -> (Start, Self) {
         let mut places = Places::new(league, seed);
         let mut theirs = Vec::new();
         let (ball, kind) = match number % GET_KINDS {
@@ -69,25 +68,13 @@ impl GetBall {
         }
         let at = ball.position;
         let description = format!("ball {kind} at ({:.2}, {:.2})", at.x(), at.y());
-        let ours = vec![(ROBOT, pose(robot, places.direction()))];
-        let start = Start {
-            description,
-            ours,
-            theirs,
-            ball,
-            path: None,
-            referee_order: RefereeOrder::Run,
-            limit: GET_LIMIT,
-        };
-        Self { start, had: Had::default() }
+        let robot = pose(robot, places.direction());
+        let start = Start { theirs, ..Start::of(description, (ROBOT, robot), ball, GET_BALL_LIMIT_S) };
+        (start, Self { had: Had::default() })
     }
 }
 
 impl Judge for GetBall {
-    fn start(&self) -> &Start {
-        &self.start
-    }
-
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         Some(player(ROBOT, Directive::GetBall { face: None }))
     }
@@ -97,19 +84,18 @@ impl Judge for GetBall {
     }
 
     fn lacks(&self, moment: &Moment<'_>) -> String {
-        description_of_gap(moment)
+        gap_text(moment)
     }
 }
 
 /// Take a pass of some speed that comes a little askew.
 pub(super) struct Receive {
-    start: Start,
     at: Point<Field>,
     had: Had,
 }
 
 impl Receive {
-    pub(super) fn new(league: League, seed: u64) -> Self {
+    pub(super) fn new(league: League, seed: u64) -> (Start, Self) {
         let mut places = Places::new(league, seed);
         let (mut from, mut at) = (places.in_play(0.5, 0.3), places.in_play(0.5, 0.3));
         while !(1.5..4.0).contains(&from.distance(at)) {
@@ -124,25 +110,15 @@ impl Receive {
         let description =
             format!("pass of {speed:.1} m/s over {:.1} m, {askew:.0}° askew", from.distance(at));
         let ball = Ball { velocity, ..Ball::at(from) };
-        let ours = vec![(ROBOT, robot)];
         let start = Start {
-            description,
-            ours,
-            theirs: Vec::new(),
-            ball,
             path: Some(Segment::new(from, at)),
-            referee_order: RefereeOrder::Run,
-            limit: RECEIVE_LIMIT,
+            ..Start::of(description, (ROBOT, robot), ball, RECEIVE_LIMIT_S)
         };
-        Self { start, at, had: Had::default() }
+        (start, Self { at, had: Had::default() })
     }
 }
 
 impl Judge for Receive {
-    fn start(&self) -> &Start {
-        &self.start
-    }
-
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         Some(player(ROBOT, Directive::Receive { at: self.at.into(), then: None }))
     }
@@ -152,45 +128,34 @@ impl Judge for Receive {
     }
 
     fn lacks(&self, moment: &Moment<'_>) -> String {
-        description_of_gap(moment)
+        gap_text(moment)
     }
 }
 
 /// Carry the ball a metre, and no farther at a time than the rules let.
 pub(super) struct Dribble {
-    start: Start,
     to: Point<Field>,
     heading: Angle,
 }
 
 impl Dribble {
-    pub(super) fn new(league: League, seed: u64) -> Self {
+    pub(super) fn new(league: League, seed: u64) -> (Start, Self) {
         let mut places = Places::new(league, seed);
         let ball = places.in_play(1.8, 0.5);
         let heading = places.direction();
-        let to = ball + Vector::polar(CARRIES, places.direction());
+        let to = ball + Vector::polar(CARRY_LENGTH_M, places.direction());
         let robot = pose(ball - Vector::polar(AT_DRIBBLER + 0.02, heading), heading);
         let description =
             format!("ball at ({:.2}, {:.2}) to ({:.2}, {:.2})", ball.x(), ball.y(), to.x(), to.y());
-        let ours = vec![(ROBOT, robot)];
         let start = Start {
-            description,
-            ours,
-            theirs: Vec::new(),
-            ball: Ball::at(ball),
             path: Some(Segment::new(ball, to)),
-            referee_order: RefereeOrder::Run,
-            limit: LIMIT,
+            ..Start::of(description, (ROBOT, robot), Ball::at(ball), CARRY_LIMIT_S)
         };
-        Self { start, to, heading: ball.direction_to(to) }
+        (start, Self { to, heading: ball.direction_to(to) })
     }
 }
 
 impl Judge for Dribble {
-    fn start(&self) -> &Start {
-        &self.start
-    }
-
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         let stands = pose(self.to - Vector::polar(AT_DRIBBLER, self.heading), self.heading);
         Some(player(ROBOT, Directive::Dribble { pose: stands.into() }))
@@ -199,10 +164,10 @@ impl Judge for Dribble {
     fn judge(&mut self, moment: &Moment<'_>) -> State {
         let ball = &moment.world.ball;
         let from = moment.ours(ROBOT).and_then(|robot| robot.dribbling_from);
-        if let Some(far) = from.map(|from| from.distance(ball.position)).filter(|far| *far > LEGAL) {
+        if let Some(far) = from.map(|from| from.distance(ball.position)).filter(|far| *far > CARRY_LEGAL_M) {
             return State::Failed(format!("dribbled {far:.2} m"));
         }
-        let there = ball.position.distance(self.to) < THERE && ball.speed() < STILL;
+        let there = ball.position.distance(self.to) < CARRIED_WITHIN_M && ball.speed() < BALL_STILL_M_S;
         if there { State::Succeeded(moment.time) } else { State::Going }
     }
 
@@ -213,7 +178,6 @@ impl Judge for Dribble {
 
 /// Take the ball, and turn half around with it.
 pub(super) struct Turn {
-    start: Start,
     lay: Point<Field>,
     heading: Angle,
     had: Had,
@@ -222,33 +186,20 @@ pub(super) struct Turn {
 }
 
 impl Turn {
-    pub(super) fn new(league: League, seed: u64) -> Self {
+    pub(super) fn new(league: League, seed: u64) -> (Start, Self) {
         let mut places = Places::new(league, seed);
         let (lay, heading) = (places.in_play(1.0, 0.3), places.direction());
         let robot = pose(lay - Vector::polar(AT_DRIBBLER + 0.1, heading), heading);
         let description = format!("at ({:.2}, {:.2}), from {:.0}°", lay.x(), lay.y(), heading.to_degrees());
-        let ours = vec![(ROBOT, robot)];
-        let start = Start {
-            description,
-            ours,
-            theirs: Vec::new(),
-            ball: Ball::at(lay),
-            path: None,
-            referee_order: RefereeOrder::Run,
-            limit: LIMIT,
-        };
-        Self { start, lay, heading, had: Had::default(), turns: None }
+        let start = Start::of(description, (ROBOT, robot), Ball::at(lay), CARRY_LIMIT_S);
+        (start, Self { lay, heading, had: Had::default(), turns: None })
     }
 }
 
 impl Judge for Turn {
-    fn start(&self) -> &Start {
-        &self.start
-    }
-
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         let facing = if self.turns.is_some() { self.heading + Angle::HALF_TURN } else { self.heading };
-        let face = self.lay + Vector::polar(FAR, facing);
+        let face = self.lay + Vector::polar(FACED_POINT_M, facing);
         Some(player(ROBOT, Directive::GetBall { face: Some(face.into()) }))
     }
 
@@ -261,7 +212,7 @@ impl Judge for Turn {
             return State::Going;
         };
         let rolled = moment.world.ball.position.distance(self.lay);
-        if rolled > ROLLS_OFF {
+        if rolled > BALL_LOST_BEYOND_M {
             return State::Failed(format!("the ball was lost: {rolled:.2} m off"));
         }
         let off = moment.ours(ROBOT).map(|robot| (robot.pose.heading - self.heading).abs());
@@ -271,34 +222,35 @@ impl Judge for Turn {
 
     fn lacks(&self, moment: &Moment<'_>) -> String {
         let off = moment.ours(ROBOT).map_or(0.0, |robot| (robot.pose.heading - self.heading).to_degrees());
-        format!("turned by {off:.0}°, {}", description_of_gap(moment))
+        format!("turned by {off:.0}°, {}", gap_text(moment))
     }
 }
 
 /// Time of uninterrupted contact after which the ball counts as taken, s.
-const KEEPS: f32 = 0.3;
+const KEPT_FOR_S: f32 = 0.3;
 /// Kinds of balls to get, which take turns.
 const GET_KINDS: u32 = 4;
-/// s.
-const GET_LIMIT: f32 = 8.0;
+/// Time after which getting the ball has failed, s.
+const GET_BALL_LIMIT_S: f32 = 8.0;
 /// A pass misses its place by as much as this, degrees.
 const ASKEW_DEG: f32 = 5.0;
-/// For the slowest pass and its keeping, s.
-const RECEIVE_LIMIT: f32 = 4.0;
-/// From a robot's centre to a ball at its dribbler, m.
+/// Time after which receiving has failed, s: for the slowest pass and its keeping.
+const RECEIVE_LIMIT_S: f32 = 4.0;
+/// Distance from a robot's centre to a ball at its dribbler, m.
 const AT_DRIBBLER: f32 = brain::body::omni::BALL_AT;
-/// How far the ball is carried, m.
-const CARRIES: f32 = 1.0;
-/// The rules' limit, m.
-const LEGAL: f32 = 1.0;
-/// Carried there, m; and as good as at rest, m/s.
-const THERE: f32 = 0.15;
-const STILL: f32 = 0.1;
-/// For dribble and turn, s.
-const LIMIT: f32 = 8.0;
-/// A point to look at, m.
-const FAR: f32 = 3.0;
+/// Distance over which the ball is carried, m.
+const CARRY_LENGTH_M: f32 = 1.0;
+/// Distance that the rules let a robot carry the ball, m.
+const CARRY_LEGAL_M: f32 = 1.0;
+/// Distance from its target at which the ball counts as carried there, m.
+const CARRIED_WITHIN_M: f32 = 0.15;
+/// Speed below which the ball counts as at rest, m/s.
+const BALL_STILL_M_S: f32 = 0.1;
+/// Time after which dribble and turn have failed, s.
+const CARRY_LIMIT_S: f32 = 8.0;
+/// Distance of the point to face, m.
+const FACED_POINT_M: f32 = 3.0;
 /// A ball this far from where it lay was lost, m.
-const ROLLS_OFF: f32 = 0.5;
-/// Half a turn but for what aiming errs.
+const BALL_LOST_BEYOND_M: f32 = 0.5;
+/// Turn that counts as half a turn, degrees: less what aiming errs.
 const TURNED_DEG: f32 = 172.0;

@@ -17,7 +17,7 @@ use arena::game::{Game, GameConfig, GameError, ManualReferee, NoWatcher};
 /// Our team.
 pub(super) const US: Colour = Colour::Yellow;
 
-/// How a try begins.
+/// Start of a try.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     /// Description.
@@ -28,32 +28,47 @@ pub(super) struct Start {
     pub(super) theirs: Vec<Pose<Field>>,
     /// The ball at the beginning.
     pub(super) ball: Ball,
-    /// Where the ball is to go: nothing else stands there.
+    /// Path of the ball: nothing else stands there.
     pub(super) path: Option<Segment<Field>>,
     /// The first command of the referee.
     pub(super) referee_order: RefereeOrder,
-    /// Time after which it has failed, s.
+    /// Time after which the try has failed, s.
     pub(super) limit: f32,
 }
 
-/// How a try stands.
+impl Start {
+    /// One of our robots and a ball in running play.
+    pub(super) fn of(description: String, (number, pose): (u8, Pose<Field>), ball: Ball, limit: f32) -> Self {
+        Self {
+            description,
+            ours: vec![(number, pose)],
+            theirs: Vec::new(),
+            ball,
+            path: None,
+            referee_order: RefereeOrder::Run,
+            limit,
+        }
+    }
+}
+
+/// State of a try.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum State {
-    /// It goes on.
+    /// Undecided.
     Going,
     /// Time until it succeeded, s.
     Succeeded(f32),
-    /// It failed, and this was wrong.
+    /// Failed, with what was wrong.
     Failed(String),
 }
 
 /// A moment of a try.
 pub(super) struct Moment<'g> {
-    /// Since the beginning, s.
+    /// Time since the beginning, s.
     pub(super) time: f32,
     /// The truth.
     pub(super) world: &'g World,
-    /// What happened in the last 10 ms.
+    /// Physical events of the last 10 ms.
     pub(super) events: &'g [PhysicsEvent],
 }
 
@@ -72,22 +87,23 @@ impl Moment<'_> {
 
     /// A robot has the ball at its dribbler.
     pub(super) fn has(&self, number: u8) -> bool {
-        self.at_dribbler(number).is_some_and(|[gap, beside]| gap.abs() < HAS && beside.abs() < HAS_BESIDE)
-            && self.world.ball.height < HAS
+        self.at_dribbler(number)
+            .is_some_and(|[gap, beside]| gap.abs() < HAS_WITHIN_M && beside.abs() < HAS_BESIDE_M)
+            && self.world.ball.height < HAS_WITHIN_M
     }
 }
 
-/// A skill's start, orders and judge.
+/// A skill's orders and judge.
 pub(super) trait Judge {
-    /// How it begins.
-    fn start(&self) -> &Start;
-    /// Orders to our robots; `None`: those of the coach.
-    fn orders(&mut self, moment: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>>;
-    /// How it stands.
+    /// Orders to our robots; `None`: the coach gives them.
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
+        None
+    }
+    /// Judges a moment.
     fn judge(&mut self, moment: &Moment<'_>) -> State;
-    /// What is wrong when time is up.
+    /// Describes what is missing when time is up.
     fn lacks(&self, moment: &Moment<'_>) -> String;
-    /// What another hand does in the world, and the next command of the referee.
+    /// Changes the world from outside, and returns the next command of the referee.
     fn happens(&mut self, _time: f32, _world: &mut World) -> Option<RefereeOrder> {
         None
     }
@@ -107,17 +123,21 @@ fn seed_of(tried: &Try) -> u64 {
     hash.value()
 }
 
-fn judge_of(tried: &Try, seed: u64) -> Box<dyn Judge> {
+/// The start of a try, and its judge.
+fn judged(tried: &Try, seed: u64) -> (Start, Box<dyn Judge>) {
+    fn boxed((start, judge): (Start, impl Judge + 'static)) -> (Start, Box<dyn Judge>) {
+        (start, Box::new(judge))
+    }
     let (league, number) = (tried.league, tried.number);
     match tried.skill {
-        Skill::Placement => Box::new(placement::Placement::new(league, number, seed)),
-        Skill::GetBall => Box::new(catches::GetBall::new(league, number, seed)),
-        Skill::Receive => Box::new(catches::Receive::new(league, seed)),
-        Skill::Dribble => Box::new(catches::Dribble::new(league, seed)),
-        Skill::TurnWithBall => Box::new(catches::Turn::new(league, seed)),
-        Skill::Kick => Box::new(kicks::Kick::flat(league, seed)),
-        Skill::Chip => Box::new(kicks::Kick::chip(league, seed)),
-        Skill::Save => Box::new(save::Save::new(league, seed)),
+        Skill::Placement => boxed(placement::Placement::new(league, number, seed)),
+        Skill::GetBall => boxed(catches::GetBall::new(league, number, seed)),
+        Skill::Receive => boxed(catches::Receive::new(league, seed)),
+        Skill::Dribble => boxed(catches::Dribble::new(league, seed)),
+        Skill::TurnWithBall => boxed(catches::Turn::new(league, seed)),
+        Skill::Kick => boxed(kicks::Kick::flat(league, seed)),
+        Skill::Chip => boxed(kicks::Kick::chip(league, seed)),
+        Skill::Save => boxed(save::Save::new(league, seed)),
     }
 }
 
@@ -141,8 +161,7 @@ pub(super) fn play(
     lines: &mut Vec<String>,
 ) -> Result<TryResult, GameError> {
     let seed = seed_of(&tried);
-    let mut judge = judge_of(&tried, seed);
-    let start = judge.start().clone();
+    let (start, mut judge) = judged(&tried, seed);
     let robots = start.ours.iter().map(|(number, _)| number + 1).max().unwrap_or(1);
     let mut game = Game::new(&config(&tried, seed, robots), backend)?;
     place(&mut game, &start, robots);
@@ -200,26 +219,22 @@ fn place(game: &mut Game<'_>, start: &Start, robots: u8) {
     }
     world.put_ball(Ball::at(start.ball.position));
     // Bystanders of the world stand where they like, but for where the try takes place.
-    let taken = |who: Who| {
-        if who.colour == US {
-            usize::from(who.id.number()) < usize::from(robots)
-        } else {
-            usize::from(who.id.number()) < start.theirs.len()
-        }
-    };
     let mut needed: Vec<Point<Field>> = start.ours.iter().map(|(_, pose)| pose.position).collect();
     needed.extend(start.theirs.iter().map(|pose| pose.position));
     needed.push(start.ball.position);
     if let RefereeOrder::Place(at) = start.referee_order {
         needed.push(at);
     }
-    let in_the_way = |robot: &&Robot| {
+    let bystanders = world.robots().iter().filter(|robot| {
+        let placed = if robot.who.colour == US { usize::from(robots) } else { start.theirs.len() };
+        robot.present && usize::from(robot.who.id.number()) >= placed
+    });
+    let in_the_way = bystanders.filter(|robot| {
         let at = robot.pose.position;
-        let near = needed.iter().any(|place| place.distance(at) < BYSTANDERS_OFF)
-            || start.path.is_some_and(|path| path.distance_to(at) < BYSTANDERS_OFF);
-        robot.present && !taken(robot.who) && near
-    };
-    let removed: Vec<Who> = world.robots().iter().filter(in_the_way).map(|robot| robot.who).collect();
+        needed.iter().any(|place| place.distance(at) < BYSTANDERS_OFF_M)
+            || start.path.is_some_and(|path| path.distance_to(at) < BYSTANDERS_OFF_M)
+    });
+    let removed: Vec<Who> = in_the_way.map(|robot| robot.who).collect();
     for who in removed {
         world.remove(who);
     }
@@ -243,8 +258,8 @@ pub(super) fn team_size(league: League) -> u8 {
 /// Before a try: cameras' first frames, radio's handshake, and tracks that are sure.
 const WARM_UP_TICKS: u32 = 80;
 /// Bystanders keep this far from where a try starts, m: room for a body to pass.
-const BYSTANDERS_OFF: f32 = 0.4;
+const BYSTANDERS_OFF_M: f32 = 0.4;
 /// Ball and dribbler this near, m: as far as a break-beam sensor sees, and a little.
-const HAS: f32 = 0.025;
+const HAS_WITHIN_M: f32 = 0.025;
 /// Beside the middle of the front, m: a dribbler's half width and a little.
-const HAS_BESIDE: f32 = 0.045;
+const HAS_BESIDE_M: f32 = 0.045;

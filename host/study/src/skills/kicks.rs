@@ -5,32 +5,31 @@ use hil_sim::small_size::{Ball, PhysicsEvent};
 use protocol::host::{Directive, KickOrder, RuleRole};
 use rules::{Colour, League};
 
-use super::drill::{Judge, Moment, RefereeOrder, Start, State, US, player, pose};
+use super::drill::{Judge, Moment, Start, State, US, player, pose};
 use super::places::Places;
 
 /// A ball that lies, and a point to kick it past.
 pub(super) struct Kick {
-    start: Start,
     from: Point<Field>,
     target: Point<Field>,
     order: KickOrder,
     within: f32,
-    /// When the ball was kicked, s.
+    /// Time of the kick, s.
     kicked: Option<f32>,
 }
 
 impl Kick {
     /// Three metres along the ground.
-    pub(super) fn flat(league: League, seed: u64) -> Self {
-        Self::new(league, seed, KickOrder::Flat(FLAT_CM_S), FLAT_DISTANCE, FLAT_WITHIN)
+    pub(super) fn flat(league: League, seed: u64) -> (Start, Self) {
+        Self::new(league, seed, KickOrder::Flat(FLAT_CM_S), FLAT_DISTANCE_M, FLAT_WITHIN_M)
     }
 
     /// Over a robot half a metre off.
-    pub(super) fn chip(league: League, seed: u64) -> Self {
-        Self::new(league, seed, KickOrder::Chip(CHIP_CM_S), CHIP_DISTANCE, CHIP_WITHIN)
+    pub(super) fn chip(league: League, seed: u64) -> (Start, Self) {
+        Self::new(league, seed, KickOrder::Chip(CHIP_CM_S), CHIP_DISTANCE_M, CHIP_WITHIN_M)
     }
 
-    fn new(league: League, seed: u64, order: KickOrder, distance: f32, within: f32) -> Self {
+    fn new(league: League, seed: u64, order: KickOrder, distance: f32, within: f32) -> (Start, Self) {
         let mut places = Places::new(league, seed);
         let from = places.in_play(0.6, 0.3);
         let mut along = places.direction();
@@ -41,31 +40,23 @@ impl Kick {
         let robot = from + Vector::polar(places.chance.between(0.3, 0.8), places.direction());
         let theirs = match order {
             KickOrder::Flat(_) => Vec::new(),
-            KickOrder::Chip(_) => vec![pose(from + Vector::polar(OBSTACLE_AT, along), along)],
+            KickOrder::Chip(_) => vec![pose(from + Vector::polar(OBSTACLE_AT_M, along), along)],
         };
         let apart = |at: Point<Field>| theirs.iter().all(|other| other.position.distance(at) > 0.25);
         let robot = if apart(robot) { robot } else { from - Vector::polar(0.4, along) };
         let description =
             format!("ball at ({:.2}, {:.2}) to ({:.2}, {:.2})", from.x(), from.y(), target.x(), target.y());
-        let ours = vec![(1, pose(robot, places.direction()))];
+        let robot = pose(robot, places.direction());
         let start = Start {
-            description,
-            ours,
             theirs,
-            ball: Ball::at(from),
             path: Some(Segment::new(from, target)),
-            referee_order: RefereeOrder::Run,
-            limit: LIMIT,
+            ..Start::of(description, (1, robot), Ball::at(from), LIMIT_S)
         };
-        Self { start, from, target, order, within, kicked: None }
+        (start, Self { from, target, order, within, kicked: None })
     }
 }
 
 impl Judge for Kick {
-    fn start(&self) -> &Start {
-        &self.start
-    }
-
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         // Once is enough: who kicked stands.
         let kicks = Directive::Kick { at: self.target.into(), kick: self.order };
@@ -111,13 +102,13 @@ impl Judge for Kick {
 
 /// A flat kick's order, cm/s; its point's distance, m; and how near it must pass it, m: half a robot.
 const FLAT_CM_S: u16 = 400;
-const FLAT_DISTANCE: f32 = 3.0;
-const FLAT_WITHIN: f32 = 0.1;
+const FLAT_DISTANCE_M: f32 = 3.0;
+const FLAT_WITHIN_M: f32 = 0.1;
 /// The same of a chip: it lands, hops and rolls askew.
 const CHIP_CM_S: u16 = 500;
-const CHIP_DISTANCE: f32 = 2.0;
-const CHIP_WITHIN: f32 = 0.15;
+const CHIP_DISTANCE_M: f32 = 2.0;
+const CHIP_WITHIN_M: f32 = 0.15;
 /// The robot that a chip must clear stands so far from the ball, m.
-const OBSTACLE_AT: f32 = 0.5;
+const OBSTACLE_AT_M: f32 = 0.5;
 /// For finding the ball, kicking and rolling, s.
-const LIMIT: f32 = 8.0;
+const LIMIT_S: f32 = 8.0;

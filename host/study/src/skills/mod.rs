@@ -21,9 +21,9 @@ mod tests;
 use casebase::CaseBase;
 use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::WorldChoice;
-use rayon::prelude::*;
 use rules::League;
 
+use crate::store::Experiment;
 use arena::game::GameError;
 pub use rows::{SkillRow, rows};
 
@@ -50,12 +50,12 @@ hil_sim::labels! {
     }
 }
 
-/// Which tries are played.
+/// Tries to be played.
 #[derive(Clone, Debug)]
 pub struct SkillPlan {
     /// Field, robots, ball and rules.
     pub league: League,
-    /// What the user called the worlds: a name, or `random`.
+    /// Name of the worlds as the user gave it: a name, or `random`.
     pub world: String,
     /// The physics of each world.
     pub worlds: Vec<WorldChoice>,
@@ -63,7 +63,7 @@ pub struct SkillPlan {
     pub tries: u32,
     /// Number of the first try: a single one is repeated by its number.
     pub first: u32,
-    /// Where all chance comes from.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Skills to try, in the order of the table.
     pub skills: Vec<Skill>,
@@ -78,13 +78,13 @@ pub struct Try {
     pub league: League,
     /// The physics that it is tried in.
     pub world: WorldChoice,
-    /// Which start: one number, one start, in every world.
+    /// Number of the start: the same start in every named world.
     pub number: u32,
     /// Seed of the plan, from which the start is drawn.
     pub seed: u64,
 }
 
-/// What came of a try.
+/// Result of a try.
 #[derive(Clone, Debug)]
 pub struct TryResult {
     /// The try that was made.
@@ -114,10 +114,19 @@ impl SkillPlan {
         }
         all
     }
+}
 
-    /// Plays all of them on the current rayon pool; results in the plan's order, for any number of threads.
-    pub fn play(&self) -> Result<Vec<TryResult>, GameError> {
-        self.tries().into_par_iter().map(|tried| tried.play(&mut Vec::new())).collect()
+impl Experiment for SkillPlan {
+    type Job = Try;
+    type Row = TryResult;
+    type Error = GameError;
+
+    fn jobs(&self) -> Result<Vec<Try>, GameError> {
+        Ok(self.tries())
+    }
+
+    fn play(&self, tried: &Try) -> Result<TryResult, GameError> {
+        tried.clone().play(&mut Vec::new())
     }
 }
 

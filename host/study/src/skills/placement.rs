@@ -3,7 +3,6 @@
 
 use geometry::{Field, Point, Segment};
 use hil_sim::small_size::Ball;
-use protocol::host::{Directive, RuleRole};
 use rules::League;
 use rules::limits::PLACEMENT_TIME_MIN;
 use rules::restart::{AfterPlacement, PlacementLack, placement_lack};
@@ -13,12 +12,11 @@ use super::places::Places;
 
 /// A ball, a place, both teams somewhere.
 pub(super) struct Placement {
-    start: Start,
     target: Point<Field>,
 }
 
 impl Placement {
-    pub(super) fn new(league: League, number: u32, seed: u64) -> Self {
+    pub(super) fn new(league: League, number: u32, seed: u64) -> (Start, Self) {
         let mut places = Places::new(league, seed);
         let (ball, kind) = match number % KINDS {
             0 => (places.inside(0.0), "on the field"),
@@ -27,15 +25,15 @@ impl Placement {
             3 => (places.in_corner(), "in a corner"),
             _ => (places.behind_goal(), "behind a goal line"),
         };
-        let mut target = places.in_play(FROM_LINES, FROM_AREAS);
-        while target.distance(ball) < LEAST {
-            target = places.in_play(FROM_LINES, FROM_AREAS);
+        let mut target = places.in_play(INSIDE_LINES_M, OFF_AREAS_M);
+        while target.distance(ball) < TARGET_DISTANCE_MIN_M {
+            target = places.in_play(INSIDE_LINES_M, OFF_AREAS_M);
         }
         let team = usize::from(team_size(league));
         let near_ball = Segment::new(ball, ball);
         let ours = places.robots(team, near_ball, 0.3, &[]);
         // As the rules want it of opponents: off the line from ball to target.
-        let theirs = places.robots(team - 1, Segment::new(ball, target), OFF_LINE, &ours);
+        let theirs = places.robots(team - 1, Segment::new(ball, target), OFF_LINE_M, &ours);
         let description = format!(
             "ball {kind} at ({:.2}, {:.2}) to ({:.2}, {:.2})",
             ball.x(),
@@ -50,9 +48,9 @@ impl Placement {
             ball: Ball::at(ball),
             path: None,
             referee_order: RefereeOrder::Place(target),
-            limit: LIMIT,
+            limit: LIMIT_S,
         };
-        Self { start, target }
+        (start, Self { target })
     }
 
     fn lack(&self, moment: &Moment<'_>) -> Option<PlacementLack> {
@@ -64,14 +62,6 @@ impl Placement {
 }
 
 impl Judge for Placement {
-    fn start(&self) -> &Start {
-        &self.start
-    }
-
-    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
-        None
-    }
-
     fn judge(&mut self, moment: &Moment<'_>) -> State {
         if moment.time >= PLACEMENT_TIME_MIN && self.lack(moment).is_none() {
             return State::Succeeded(moment.time);
@@ -94,12 +84,12 @@ impl Judge for Placement {
 /// Kinds of starts that take turns.
 const KINDS: u32 = 5;
 /// Targets are this far inside the lines, m: where the rules let free kicks be.
-const FROM_LINES: f32 = 0.2;
+const INSIDE_LINES_M: f32 = 0.2;
 /// And this far from defence areas, m.
-const FROM_AREAS: f32 = 0.3;
+const OFF_AREAS_M: f32 = 0.3;
 /// Nearer targets are no placement, m.
-const LEAST: f32 = 0.5;
+const TARGET_DISTANCE_MIN_M: f32 = 0.5;
 /// Opponents stand this far from the line from ball to target, m: the rules' half metre and a body.
-const OFF_LINE: f32 = 0.6;
+const OFF_LINE_M: f32 = 0.6;
 /// A placement has failed after this, s: half of the rules' time.
-const LIMIT: f32 = 15.0;
+const LIMIT_S: f32 = 15.0;

@@ -25,7 +25,7 @@ impl Places {
 
     /// The same, and outside both defence areas by `off`.
     pub(super) fn in_play(&mut self, margin: f32, off: f32) -> Point<Field> {
-        for _ in 0..DRAWS {
+        for _ in 0..DRAWS_MAX {
             let at = self.inside(margin);
             let clear = |goal| self.field.distance_to_area(goal, at) > off;
             if clear(GoalEnd::Negative) && clear(GoalEnd::Positive) {
@@ -45,7 +45,7 @@ impl Places {
     }
 
     fn off_board(&mut self) -> f32 {
-        BALL_RADIUS + self.chance.between(0.0, AT_BOARD)
+        BALL_RADIUS + self.chance.between(0.0, OFF_BOARD_MAX_M)
     }
 
     /// Along a side's board.
@@ -58,7 +58,7 @@ impl Places {
     /// Along an end's board, beside the goal.
     pub(super) fn at_end(&mut self) -> Point<Field> {
         let (far, wide) = (0.5 * self.field.length + self.field.goal_line_margin, 0.5 * self.field.width);
-        let beside = 0.5 * self.field.goal_width + BESIDE_GOAL;
+        let beside = 0.5 * self.field.goal_width + BESIDE_GOAL_MAX_M;
         let y = self.sign() * self.chance.between(beside, wide);
         Point::new(self.sign() * (far - self.off_board()), y)
     }
@@ -81,14 +81,14 @@ impl Places {
                 let deep = self.chance.between(0.03, f.goal_depth - BALL_RADIUS);
                 (line + deep, self.chance.between(0.0, half - 0.05))
             }
-            1 if room > ROOM_BEHIND => {
+            1 if room > BEHIND_GOAL_MIN_M => {
                 let behind = self.chance.between(BALL_RADIUS, room - BALL_RADIUS);
                 (line + f.goal_depth + f.goal_wall + behind, self.chance.between(0.0, half))
             }
             _ => {
                 let outer = half + f.goal_wall + BALL_RADIUS;
                 let deep = self.chance.between(0.03, f.goal_line_margin - BALL_RADIUS);
-                (line + deep, outer + self.chance.between(0.01, BESIDE_GOAL))
+                (line + deep, outer + self.chance.between(0.01, BESIDE_GOAL_MAX_M))
             }
         };
         Point::new(self.sign() * x, self.sign() * y)
@@ -103,12 +103,12 @@ impl Places {
         before: &[Pose<Field>],
     ) -> Vec<Pose<Field>> {
         let mut placed: Vec<Pose<Field>> = Vec::new();
-        for _ in 0..DRAWS {
+        for _ in 0..DRAWS_MAX {
             if placed.len() == count {
                 break;
             }
             let (at, heading) = (self.in_play(0.2, 0.3), self.direction());
-            let apart = |other: &Pose<Field>| other.position.distance(at) > APART;
+            let apart = |other: &Pose<Field>| other.position.distance(at) > ROBOTS_APART_M;
             if keep_off.distance_to(at) > off && before.iter().chain(&placed).all(apart) {
                 placed.push(Pose { position: at, heading });
             }
@@ -118,12 +118,12 @@ impl Places {
 }
 
 /// Draws at most: starts come to an end.
-const DRAWS: usize = 10_000;
+const DRAWS_MAX: usize = 10_000;
 /// A ball at a board lies within this of it, m.
-const AT_BOARD: f32 = 0.04;
+const OFF_BOARD_MAX_M: f32 = 0.04;
 /// Beside a goal is within this of its wall, m.
-const BESIDE_GOAL: f32 = 0.3;
+const BESIDE_GOAL_MAX_M: f32 = 0.3;
 /// Behind a goal with less room than this no robot gets at a ball, m: a body and a little.
-const ROOM_BEHIND: f32 = 0.24;
+const BEHIND_GOAL_MIN_M: f32 = 0.24;
 /// Robots start this far from each other, m.
-const APART: f32 = 0.4;
+const ROBOTS_APART_M: f32 = 0.4;

@@ -4,18 +4,18 @@ use serde::Serialize;
 
 use super::{SkillPlan, TryResult};
 
-/// What a skill came to.
+/// Success rate and times of a skill.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SkillRow {
     /// The skill's name, as `--skill` takes it.
     pub skill: &'static str,
-    /// Whose field and robots.
+    /// League, by name: field and robots.
     pub league: String,
-    /// In which worlds, as they were asked for.
+    /// Worlds, as they were asked for.
     pub world: String,
     /// Number of worlds in which it was tried.
     pub worlds: usize,
-    /// How many tries in all of them.
+    /// Number of tries in all worlds.
     pub tries: usize,
     /// Number of tries that succeeded.
     pub succeeded: usize,

@@ -13,7 +13,7 @@ use arena::game::Game;
 
 /// A line, when one is due.
 pub(super) fn note_events(lines: &mut Vec<String>, time: f32, game: &Game<'_>) {
-    if !((time * 100.0).round() as u32).is_multiple_of(EVERY) {
+    if !((time * 100.0).round() as u32).is_multiple_of(TICKS_A_LINE) {
         return;
     }
     let (world, host) = (game.world(), game.host(US));
@@ -66,4 +66,4 @@ pub(super) fn note_events(lines: &mut Vec<String>, time: f32, game: &Game<'_>) {
 }
 
 /// Ticks of 10 ms between two lines.
-const EVERY: u32 = 10;
+const TICKS_A_LINE: u32 = 10;

@@ -111,10 +111,8 @@ pub(super) const CLAIMS: &[Entry] = &[
         "5.2.1",
         "The defender has the ball more often in scenarios 1 to 3 than in 4, which begins nearer to the goal.",
         |r| {
-            let of = |approach| {
-                FIRST_THREE.map(|far| r.scenarios(1, approach, Measure::Possession, [far, DefenderClose]))
-            };
-            [Cases, Reactive].into_iter().flat_map(of).collect()
+            let pairs = [Cases, Reactive].into_iter().flat_map(|team| FIRST_THREE.map(|far| (team, far)));
+            pairs.map(|(team, far)| r.scenarios(1, team, Measure::Possession, [far, DefenderClose])).collect()
         },
     ),
     (

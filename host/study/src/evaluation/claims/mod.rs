@@ -21,7 +21,7 @@ pub(super) use point::{Rows, p_text};
 /// A claim of the paper about its results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
-    /// Its short name in tables and JSON.
+    /// Short name in tables and JSON.
     pub id: &'static str,
     /// Section of the paper.
     pub section: &'static str,
@@ -36,22 +36,22 @@ pub struct Claim {
 }
 
 hil_sim::labels! {
-    /// Do numbers bear it out?
+    /// Verdict on a claim.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]
     pub enum ClaimVerdict {
         /// The numbers support it, in every point.
         Supported = "supported",
-        /// They contradict it, in one point at least.
+        /// The numbers contradict it, in one point at least.
         Contradicted = "contradicted",
         /// Neither: at least one point is not significant or not measured.
         Undecided = "undecided",
-        /// There are no numbers for it.
+        /// No numbers for it.
         Unmeasured = "unmeasured",
     }
 }
 
-/// What numbers imply for a claim.
+/// Verdict of numbers on a claim.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judgement {
     /// Supported, contradicted or undecided.

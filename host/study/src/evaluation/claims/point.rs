@@ -41,9 +41,9 @@ pub struct ClaimPoint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Standing {
-    /// It supports the claim.
+    /// The claim is supported.
     Holds,
-    /// It supports the opposite.
+    /// The opposite is supported.
     Against,
     /// The difference is not significant.
     Open,
@@ -60,7 +60,7 @@ pub(in super::super) enum Wanted {
     Alike,
 }
 
-/// Significance level (paper §5: Student's t at the usual level).
+/// Significance level (paper §5: Student's t at 5 percent).
 const LEVEL: f64 = 0.05;
 
 impl ClaimPoint {
@@ -89,7 +89,7 @@ impl ClaimPoint {
         point
     }
 
-    /// With this number of decimals.
+    /// Sets the number of decimals.
     pub(in super::super) fn with_decimals(self, decimals: usize) -> Self {
         Self { decimals, ..self }
     }
@@ -135,7 +135,17 @@ impl fmt::Display for ClaimPoint {
     }
 }
 
-/// A p value in the usual form: `p 0.035`, `p < 0.001`.
+/// Variance of a row's percentage or mean; `None` where no spread is known.
+fn variance_of_mean(measure: Measure, row: &TableRow) -> Option<f64> {
+    if let Some(count) = measure.count(row) {
+        let share = count.share()?;
+        return Some(1e4 * share * (1.0 - share) / f64::from(count.of));
+    }
+    let sample = measure.sample(row)?;
+    sample.sd.map(|sd| sd * sd / f64::from(sample.n))
+}
+
+/// A p value as text: `p 0.035`, `p < 0.001`.
 pub(in super::super) fn p_text(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_owned() } else { format!("p {p:.3}") }
 }
@@ -144,7 +154,7 @@ pub(in super::super) fn p_text(p: f64) -> String {
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct Rows<'a> {
     pub(in super::super) rows: &'a [TableRow],
-    /// Of Table 6, the rows of all trials where there are any, or of as many as the paper's.
+    /// Sample of Table 6: all trials where there are such rows, or as many as the paper's.
     pub(in super::super) sample: Extent,
 }
 
@@ -195,7 +205,7 @@ impl<'a> Rows<'a> {
         Some(point.with_decimals(decimals(measure)))
     }
 
-    /// How much greater a measure is in one approach than in another, in two cells; in the first cell it
+    /// Compares by how much a measure is greater in one approach than in another, in two cells; in the first it
     /// should be more.
     pub(in super::super) fn effects(
         self,
@@ -220,15 +230,8 @@ impl<'a> Rows<'a> {
     ) -> Option<(f64, Option<f64>)> {
         let (a, b) = (self.row(table, scenario, first)?, self.row(table, scenario, second)?);
         let difference = measure.value(a)? - measure.value(b)?;
-        let variance = |row: &TableRow| {
-            if let Some(count) = measure.count(row) {
-                let share = count.share()?;
-                return Some(1e4 * share * (1.0 - share) / f64::from(count.of));
-            }
-            let sample = measure.sample(row)?;
-            sample.sd.map(|sd| sd * sd / f64::from(sample.n))
-        };
-        Some((difference, variance(a).zip(variance(b)).map(|(x, y)| x + y)))
+        let variances = variance_of_mean(measure, a).zip(variance_of_mean(measure, b));
+        Some((difference, variances.map(|(x, y)| x + y)))
     }
 
     /// A mean of the first approach against a multiple of that of the second.
@@ -271,7 +274,7 @@ impl<'a> Rows<'a> {
         Some(Count { hits: several.round() as u32, of: (one + several).round() as u32 })
     }
 
-    /// That share compared with one half.
+    /// The share of cases for several robots, compared with one half.
     pub(in super::super) fn half_cooperative(self, scenario: Scenario) -> Option<ClaimPoint> {
         let count = self.cooperative(scenario, Approach::Cases)?;
         let share = 100.0 * count.share()?;
@@ -286,7 +289,7 @@ impl<'a> Rows<'a> {
         Some(point.with_decimals(1))
     }
 
-    /// Of two scenarios, the first should have more cases for several.
+    /// The share of cases for several robots in two scenarios; the first should have more.
     pub(in super::super) fn more_cooperative(self, [first, second]: [Scenario; 2]) -> Option<ClaimPoint> {
         let (a, b) = (self.cooperative(first, Approach::Cases)?, self.cooperative(second, Approach::Cases)?);
         let [x, y] = [first, second].map(|scenario| format!("scenario {scenario}"));

@@ -1,6 +1,7 @@
 //! Tests: equal evaluations give equal files, independent of threads, shards and interrupts.
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -9,8 +10,7 @@ use hil_sim::{Configuration, Scenario};
 
 use super::*;
 use crate::evaluation::plan::EvaluationCell;
-use crate::evaluation::row::{csv_hash, to_csv};
-use crate::evaluation::trial_store::read;
+use crate::store::{RunProgress, csv_hash, merge, read, to_csv};
 use arena::Profile;
 
 /// A directory of a test's own, removed at the end of the test.

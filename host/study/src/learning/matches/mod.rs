@@ -1,4 +1,4 @@
-//! `matches`: the same cycle for libraries of the Small Size League, whose play is matches.
+//! `matches`: learning from matches, for libraries of the Small Size League.
 //!
 //! ```text
 //! beginnings of matches ─► evidence ─► proposals ─► scenes (halving) ─► finalists
@@ -10,11 +10,11 @@
 //! touches, and the scenes from there on are a pair from an equal start, robots in motion. Opponents take
 //! turns.
 
-mod judging;
 mod unit;
 mod value;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::ops::Range;
 
 use arena::CycleEnd;
 use case_tools::Files;
@@ -24,30 +24,19 @@ use crate::learning::betting::Wager;
 use crate::learning::collected::Collected;
 use crate::learning::competence::standings;
 use crate::learning::edit::{Change, Edit};
-use crate::learning::evidence::{CasePlay, Evidence};
-use crate::learning::journal::{JournalPlayer, Playable};
-use crate::learning::learner::LearnError;
+use crate::learning::evidence::CasePlay;
 use crate::learning::null_control;
-use crate::learning::proposals::{Kind, Proposal, Tried, from_evidence};
-use crate::learning::results::{ChangeRecord, Learned, note_tried};
+use crate::learning::player::{Playable, Player};
+use crate::learning::proposals::{Kind, Proposal, from_evidence};
+use crate::learning::results::{Learned, Validation, Verdict};
+use crate::learning::run::{Candidate, LearnError, LearnResult, Run, Screening, Testing, World};
 use crate::learning::settings::LearnSettings;
 use crate::learning::starts::StartStream;
 use crate::learning::variant::Variant;
-use crate::learning::work::PlayError;
 
+use unit::OPPONENTS;
 pub use unit::{LearningMatch, Mark, MarkKind, MatchDecision, MatchUnit, MatchWork, SCENE_MS};
-
-/// Plays matches, or knows what became of them.
-pub trait MatchPlayer {
-    /// The match of every unit, in order.
-    fn play_matches(&mut self, units: &[MatchUnit<'_>]) -> Result<Vec<LearningMatch>, PlayError>;
-}
-
-impl MatchPlayer for JournalPlayer<'_, LearningMatch> {
-    fn play_matches(&mut self, units: &[MatchUnit<'_>]) -> Result<Vec<LearningMatch>, PlayError> {
-        Ok(self.play_all(units)?.into_iter().flatten().collect())
-    }
-}
+use value::{DIFFERENCE_MAX, value};
 
 /// Learns from the files of a library of the Small Size League and what was collected of earlier play. Its
 /// `budget` is of scenes: parts of matches of [`SCENE_MS`].
@@ -55,50 +44,11 @@ pub fn learn_matches(
     files: Files,
     earlier: Collected,
     settings: &LearnSettings,
-    player: &mut impl MatchPlayer,
+    player: &mut impl for<'u> Player<MatchUnit<'u>>,
 ) -> Result<Learned, LearnError> {
     let start = Variant::new(files).map_err(LearnError::Library)?;
-    let mut run = Run {
-        sizes: Sizes::of(settings.budget),
-        settings,
-        player,
-        evidence: earlier.evidence,
-        libraries: vec![start.hash],
-        tried: Tried::new(),
-        asked: BTreeSet::new(),
-        spent: 0,
-        tests: 0,
-        accepted: 0,
-        used: BTreeMap::new(),
-        changes: Vec::new(),
-    };
-    let mut current = start.clone();
-    for round in 1.. {
-        let before = run.changes.len();
-        let next = run.round(&current, round)?;
-        if next.hash != current.hash {
-            run.libraries.push(next.hash);
-        }
-        current = next;
-        let idle = run.changes.len() == before;
-        let exhausted = idle || run.tests >= settings.tries;
-        if settings.dry_run || exhausted || run.spent >= settings.budget {
-            break;
-        }
-    }
-    let Run { evidence, changes, spent, tests, .. } = run;
-    Ok(Learned {
-        settings: settings.clone(),
-        start,
-        end: current,
-        evidence,
-        changes,
-        curve: Vec::new(),
-        plays: Vec::new(),
-        spent,
-        tests,
-        opponents: unit::OPPONENTS.map(|team| team.label().to_owned()).to_vec(),
-    })
+    let world = Matches { sizes: Sizes::of(settings.budget), player };
+    Run::new(world, start, earlier.evidence, settings).learn()
 }
 
 /// Numbers of matches a round.
@@ -117,48 +67,49 @@ struct Sizes {
 }
 
 impl Sizes {
+    /// Length of a beginning, simulated ms: three or four cases are played in it, and what goes before a
+    /// scene is played again with every edited library.
+    const BEGINNING_MS: u32 = 90_000;
+    /// Length of a whole match, simulated ms.
+    const WHOLE_MS: u32 = 600_000;
+    /// Scenes that a whole match counts as.
+    const WHOLE_SCENES: u64 = (Self::WHOLE_MS / SCENE_MS) as u64;
+    /// Matches after which opponents and ends repeat.
+    const TURN: u64 = 6;
+
     /// A sixth of the budget explores; one test takes up to two thirds of it, a validation an eighth. Every
     /// opponent is met as often from both ends.
     fn of(budget: u64) -> Self {
-        let beginning = u64::from(BEGINNING_MS).div_ceil(SCENE_MS.into());
-        let turns = |matches: u64, most: u64| (matches.clamp(TURN, most) / TURN * TURN) as u32;
-        let explore = turns(budget / 6 / beginning, 600);
+        let beginning = u64::from(Self::BEGINNING_MS).div_ceil(SCENE_MS.into());
+        let explore = Self::turns(budget / 6 / beginning, 600);
         Self {
-            beginning_ms: BEGINNING_MS,
+            beginning_ms: Self::BEGINNING_MS,
             explore,
-            look: turns(u64::from(explore) / 2, 300),
-            validate: turns(budget / 8 / WHOLE_SCENES / 2, 120),
+            look: Self::turns(u64::from(explore) / 2, 300),
+            validate: Self::turns(budget / 8 / Self::WHOLE_SCENES / 2, 120),
             proposals: (explore as usize / 24).clamp(3, 10),
+        }
+    }
+
+    /// Whole turns of matches, one at least and `most` matches at most.
+    fn turns(matches: u64, most: u64) -> u32 {
+        (matches.clamp(Self::TURN, most) / Self::TURN * Self::TURN) as u32
+    }
+
+    /// Matches of a stream that are played at once, and where they are left, simulated ms.
+    fn of_stream(self, stream: StartStream) -> (u32, u32) {
+        match stream {
+            StartStream::Exploration => (self.explore, self.beginning_ms),
+            StartStream::Confirmation => (self.look, self.beginning_ms),
+            StartStream::Validation | StartStream::HeldOut => (self.validate, Self::WHOLE_MS),
         }
     }
 }
 
-/// Length of a beginning, simulated ms: three or four cases are played in it, and what goes before a scene
-/// is played again with every edited library.
-const BEGINNING_MS: u32 = 90_000;
-/// A whole match, simulated ms.
-const WHOLE_MS: u32 = 600_000;
-/// Scenes that a whole match counts as.
-const WHOLE_SCENES: u64 = (WHOLE_MS / SCENE_MS) as u64;
-/// Matches after which opponents and ends repeat.
-const TURN: u64 = 6;
-
-struct Run<'r, P> {
-    settings: &'r LearnSettings,
+/// The world of matches, and who plays them.
+struct Matches<'r> {
     sizes: Sizes,
-    player: &'r mut P,
-    evidence: Evidence,
-    /// Hashes of the libraries so far, oldest first.
-    libraries: Vec<u64>,
-    tried: Tried,
-    /// Units that were played: the same unit is not played again.
-    asked: BTreeSet<u64>,
-    spent: u64,
-    tests: u32,
-    accepted: u32,
-    /// Matches of each stream that were used up.
-    used: BTreeMap<StartStream, u32>,
-    changes: Vec<ChangeRecord>,
+    player: &'r mut dyn for<'u> Player<MatchUnit<'u>>,
 }
 
 /// Matches of a library.
@@ -186,103 +137,169 @@ impl Played {
     }
 }
 
-/// A proposal that is tried.
-struct Candidate {
-    proposal: Proposal,
-    variant: Variant,
-    wager: Wager,
-    /// Numbers of the matches that it may change.
-    touched: Vec<usize>,
-    /// Their share.
-    share: f64,
-}
+impl World for Matches<'_> {
+    type Played = Played;
+    type Ground = Played;
+    type Changed = ();
+    /// Each finalist's test takes up to half of the budget.
+    const SCREENING: Screening =
+        Screening { touched_min: 6, steps: [(12, 2), (36, 2), (96, 1)], finalists: 3, finalist_z: 1.0 };
+    const TESTING: Testing = Testing { looks: 8, hopeless_z: -0.5, hopeless_step: 0.25 };
+    const IDLE_ROUNDS: u32 = 1;
 
-impl Candidate {
-    fn new(proposal: Proposal, variant: Variant, played: &Played) -> Self {
-        let touched = played.touched(&proposal.edit);
-        let share = touched.len() as f64 / played.matches.len().max(1) as f64;
-        Self { proposal, variant, wager: Wager::default(), touched, share }
-    }
-}
-
-impl<P: MatchPlayer> Run<'_, P> {
-    fn round(&mut self, current: &Variant, round: u32) -> Result<Variant, LearnError> {
-        let Sizes { beginning_ms, explore, .. } = self.sizes;
-        let explored = self.fresh(current, StartStream::Exploration, explore, beginning_ms)?;
-        self.collect(current, &explored);
-        let proposals = self.propose(current);
-        let before = self.changes.len();
-        let finalists = self.screen(current, &explored, proposals, round)?;
-        if self.settings.dry_run {
-            return Ok(current.clone());
-        }
-        let next = self.judge(current, finalists, round)?;
-        note_tried(&mut self.tried, current, &self.changes[before..]);
-        Ok(next)
-    }
-
-    /// Plays matches of a stream that no other step has seen.
-    fn fresh(
-        &mut self,
-        variant: &Variant,
-        stream: StartStream,
-        count: u32,
-        until_ms: u32,
-    ) -> Result<Played, LearnError> {
-        let used = self.used.entry(stream).or_default();
-        let first = *used;
-        *used += count;
+    fn fresh(run: &mut Run<'_, Self>, stream: StartStream) -> LearnResult<Played> {
+        let (count, until_ms) = run.world.sizes.of_stream(stream);
+        let first = run.take(stream, count);
         let works: Vec<_> =
             (first..first + count).map(|index| MatchWork { stream, index, until_ms }).collect();
-        let units = works.iter().map(|work| MatchUnit { variant, work: *work, beside: None });
-        let matches = self.play(&units.collect::<Vec<_>>())?;
-        Ok(Played::new(variant, works, matches))
+        let current = run.current.clone();
+        let matches = run.play_whole(&current, &works)?;
+        Ok(Played::new(&current, works, matches))
     }
 
-    fn play(&mut self, units: &[MatchUnit<'_>]) -> Result<Vec<LearningMatch>, LearnError> {
-        let played = self.player.play_matches(units)?;
-        for (unit, played) in units.iter().zip(&played) {
-            if self.asked.insert(unit.key()) {
-                self.spent += unit.counts(std::slice::from_ref(played));
-            }
-        }
-        Ok(played)
-    }
-
-    /// Adds the plays of cases to the evidence, as recorded matches are; in the null control with the goals
-    /// of other plays.
-    fn collect(&mut self, current: &Variant, played: &Played) {
+    /// Adds the plays of cases, as recorded matches are; in the null control with the goals of other plays.
+    fn collect(run: &mut Run<'_, Self>, played: &Played) {
         let world = WorldChoice::default().to_string();
         let decisions = played.matches.iter().flat_map(|played| &played.decisions);
         let plays: Vec<_> = decisions.filter(|decision| decision.end.is_some()).collect();
         let mut goals: Vec<bool> = plays.iter().map(|decision| decision.goal).collect();
         let first = played.works.first().map_or(0, |work| work.index);
-        null_control::shuffle(self.settings, first, &mut goals);
+        null_control::shuffle(run.settings, first, &mut goals);
         for (decision, goal) in plays.into_iter().zip(goals) {
-            let end = decision.end.and_then(|end| CycleEnd::DESCRIPTION.get(usize::from(end)).copied());
+            let end = decision.end.and_then(|end| CycleEnd::LABELS.get(usize::from(end)).copied());
             let situation = &decision.situation;
             let play = CasePlay { situation, case: Some(decision.case), to_goal: goal, end };
-            self.evidence.add_play(current, &world, &situation.opponents.len().to_string(), &play);
+            run.evidence.add_play(&run.current, &world, &situation.opponents.len().to_string(), &play);
         }
     }
 
-    /// Proposals of the kinds that matches can try. Hosts retrieve with the usual settings, so no order is
+    /// Proposals of the kinds that matches can try. Hosts retrieve with the default settings, so no order is
     /// tried; demands on a goalkeeper are for the four-legged league's opponents.
-    fn propose(&self, current: &Variant) -> Vec<Proposal> {
-        let known = standings(&self.evidence, &self.libraries);
-        let kinds = [Kind::Scopes, Kind::Actions, Kind::Forget];
-        let kinds = kinds.into_iter().filter(|kind| self.settings.kinds.contains(kind));
-        let proposals = kinds.flat_map(|kind| {
-            let mut all = from_evidence(current, &known, kind, &self.tried);
-            all.retain(|Proposal { edit, .. }| {
-                !matches!(edit.change, Change::AddOpponent(..)) && !self.settings.refused.contains(edit)
+    fn propose(run: &mut Run<'_, Self>, _: &Played) -> LearnResult<Vec<Proposal>> {
+        let known = standings(&run.evidence, &run.libraries);
+        let LearnSettings { kinds, refused, .. } = run.settings;
+        let mut proposals = Vec::new();
+        for kind in
+            [Kind::Scopes, Kind::Actions, Kind::Forget].into_iter().filter(|kind| kinds.contains(kind))
+        {
+            let mut of_kind = from_evidence(&run.current, &known, kind, &run.tried);
+            of_kind.retain(|Proposal { edit, .. }| {
+                !matches!(edit.change, Change::AddOpponent(..)) && !refused.contains(edit)
             });
-            all.truncate(self.sizes.proposals);
-            all
-        });
-        proposals.collect()
+            of_kind.truncate(run.world.sizes.proposals);
+            proposals.extend(of_kind);
+        }
+        Ok(proposals)
+    }
+
+    fn ground(_: &Run<'_, Self>, played: Played) -> Played {
+        played
+    }
+
+    fn touched(played: &Played, edit: &Edit, _: &Variant) -> (Vec<usize>, usize) {
+        (played.touched(edit), played.matches.len())
+    }
+
+    /// Bets on the scenes from where matches change; a match that stays the same is an equal pair.
+    fn play_pairs(
+        run: &mut Run<'_, Self>,
+        played: &Played,
+        tried: &mut [Candidate],
+        range: Range<usize>,
+    ) -> LearnResult<()> {
+        let mut units = Vec::new();
+        for candidate in &*tried {
+            let variant = &candidate.variant;
+            units.extend(candidate.chosen(&range).into_iter().map(|i| {
+                let beside = Some((played.library, &played.matches[i]));
+                MatchUnit { variant, work: played.works[i], beside }
+            }));
+        }
+        let with = run.play(&units)?;
+        let mut with = with.iter();
+        for candidate in tried {
+            for (i, with) in candidate.chosen(&range).into_iter().zip(with.by_ref()) {
+                let sign = sign(run.settings, &candidate.proposal.edit, &played.works[i]);
+                let difference = with.same_until_s.map_or(0.0, |from_s| {
+                    value(&with.marks, from_s * 1000) - value(&played.matches[i].marks, from_s * 1000)
+                });
+                candidate.wager.add_difference(sign * difference, DIFFERENCE_MAX);
+            }
+        }
+        Ok(())
+    }
+
+    fn look(run: &mut Run<'_, Self>, candidate: &mut Candidate, block: &Played) -> LearnResult<()> {
+        candidate.touched = block.touched(&candidate.proposal.edit);
+        Self::play_pairs(run, block, std::slice::from_mut(candidate), 0..usize::MAX)
+    }
+
+    /// Whole matches are not lower against any opponent.
+    fn validate(
+        run: &mut Run<'_, Self>,
+        candidate: &Candidate,
+        _: &mut Option<Played>,
+    ) -> LearnResult<(Verdict, Validation)> {
+        let without = Self::fresh(run, StartStream::Validation)?;
+        let with = run.play_whole(&candidate.variant, &without.works)?;
+        let (mut all, mut against) = (Wager::default(), [Wager::default(); OPPONENTS.len()]);
+        for ((work, with), without) in without.works.iter().zip(&with).zip(&without.matches) {
+            let sign = sign(run.settings, &candidate.proposal.edit, work);
+            let difference = sign * (ahead(with) - ahead(without));
+            all.add_difference(difference, GOALS_MAX);
+            against[work.opponent()].add_difference(difference, GOALS_MAX);
+        }
+        let lowered = against.iter().any(|wager| wager.z() < LOWERED_Z);
+        let verdict = if lowered { Verdict::Lowers } else { Verdict::Accepted };
+        let kinds = OPPONENTS.iter().zip(against).map(|(team, wager)| (team.label().to_owned(), wager));
+        Ok((verdict, Validation { all, kinds: kinds.collect(), worlds: Vec::new() }))
+    }
+
+    /// Matches with the accepted library are others from some decision on: they are played afresh.
+    fn renew(_: &mut Run<'_, Self>, _: &Candidate, blocks: &mut Vec<Played>, _: Vec<()>) -> LearnResult<()> {
+        blocks.clear();
+        Ok(())
+    }
+
+    fn opponents() -> Vec<String> {
+        OPPONENTS.map(|team| team.label().to_owned()).to_vec()
     }
 }
+
+impl Run<'_, Matches<'_>> {
+    /// Plays units; the budget counts each once.
+    fn play(&mut self, units: &[MatchUnit<'_>]) -> LearnResult<Vec<LearningMatch>> {
+        let played = self.world.player.play(units)?;
+        for (unit, played) in units.iter().zip(&played) {
+            if self.asked.insert(unit.key()) {
+                self.spent += unit.counts(played);
+            }
+        }
+        Ok(played.into_iter().flatten().collect())
+    }
+
+    /// Plays matches to where their works leave them.
+    fn play_whole(&mut self, variant: &Variant, works: &[MatchWork]) -> LearnResult<Vec<LearningMatch>> {
+        let units = works.iter().map(|work| MatchUnit { variant, work: *work, beside: None });
+        self.play(&units.collect::<Vec<_>>())
+    }
+}
+
+/// −1 where chance swaps the sides of a pair of the null control; 1 in all other runs.
+fn sign(settings: &LearnSettings, edit: &Edit, work: &MatchWork) -> f64 {
+    if null_control::swaps(settings, edit, work.stream as u8, work.index) { -1.0 } else { 1.0 }
+}
+
+/// Goals ahead at the end.
+fn ahead(played: &LearningMatch) -> f64 {
+    let [ours, theirs] = played.goals;
+    f64::from(ours) - f64::from(theirs)
+}
+
+/// Matches against an opponent count as lowered from here on: p < 0.025 on one side.
+const LOWERED_Z: f64 = -1.96;
+/// Differences of whole matches beyond this count as this, goals.
+const GOALS_MAX: f64 = 20.0;
 
 #[cfg(test)]
 mod tests;

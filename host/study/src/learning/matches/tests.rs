@@ -4,10 +4,13 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use crate::evaluation::Shard;
+use crate::store::Shard;
 
 use super::value::value;
 use super::*;
+use crate::learning::evidence::Evidence;
+use crate::learning::journal::JournalPlayer;
+use crate::learning::player::PlayError;
 use crate::learning::starts::Worlds;
 use crate::learning::trial::Situation;
 
@@ -35,47 +38,32 @@ fn settings(shuffle: bool) -> LearnSettings {
 /// Short beginnings, so that a test takes seconds.
 const SIZES: Sizes = Sizes { beginning_ms: 40_000, explore: 6, look: 6, validate: 6, proposals: 2 };
 
-fn run<'r, P>(settings: &'r LearnSettings, player: &'r mut P, sizes: Sizes) -> Run<'r, P> {
-    Run {
-        settings,
-        sizes,
-        player,
-        evidence: Evidence::default(),
-        libraries: Vec::new(),
-        tried: Tried::new(),
-        asked: BTreeSet::new(),
-        spent: 0,
-        tests: 0,
-        accepted: 0,
-        used: BTreeMap::new(),
-        changes: Vec::new(),
-    }
-}
-
 fn candidates(current: &Variant, explored: &Played, edits: &[(&str, Change)]) -> Vec<Candidate> {
     let candidate = |(case, change): &(&str, Change)| {
         let edit = Edit { case: (*case).to_owned(), change: change.clone() };
         let variant = current.edited(&edit).unwrap();
         let proposal = Proposal { kind: Kind::Actions, edit, reason: String::new(), weight: 1.0 };
-        Candidate::new(proposal, variant, explored)
+        let touched = explored.touched(&proposal.edit);
+        Candidate::new(proposal, variant, (touched, explored.matches.len()))
     };
     edits.iter().map(candidate).collect()
 }
 
 /// Matches of the authored library, and what an edit of its most frequent case makes of them.
-fn round(player: &mut impl MatchPlayer) -> String {
+fn round(player: &mut impl for<'u> Player<MatchUnit<'u>>) -> String {
     let current = Variant::new(authored()).unwrap();
     let settings = settings(false);
-    let mut run = run(&settings, player, SIZES);
-    let explored = run.fresh(&current, StartStream::Exploration, 6, SIZES.beginning_ms).unwrap();
-    run.collect(&current, &explored);
+    let world = Matches { sizes: SIZES, player };
+    let mut run = Run::new(world, current.clone(), Evidence::default(), &settings);
+    let explored = Matches::fresh(&mut run, StartStream::Exploration).unwrap();
+    Matches::collect(&mut run, &explored);
     let edits = [
         ("front-side/sharp-angle", Change::Forget),
         ("front-side/near-post", Change::BallScope([400, 400])),
         ("center/kick-off", Change::Forget),
     ];
     let mut tried = candidates(&current, &explored, &edits);
-    run.play_scenes(&explored, &mut tried, 0..usize::MAX).unwrap();
+    Matches::play_pairs(&mut run, &explored, &mut tried, 0..usize::MAX).unwrap();
     // A case that was never among the actions is forgotten without a trace.
     let rare = ["back/keeper-out", "corner/short", "center/third-man"].map(|case| (case, Change::Forget));
     let mut untouched = candidates(&current, &explored, &rare);
@@ -83,7 +71,7 @@ fn round(player: &mut impl MatchPlayer) -> String {
     for one in &mut untouched {
         one.touched = unlisted(&one.proposal.edit.case).into_iter().collect();
     }
-    run.play_scenes(&explored, &mut untouched, 0..1).unwrap();
+    Matches::play_pairs(&mut run, &explored, &mut untouched, 0..1).unwrap();
     let pairs: Vec<_> = untouched.iter().map(|one| one.wager).collect();
     assert!(pairs.iter().all(|wager| (wager.raised, wager.lowered) == (0, 0)), "{pairs:?}");
     let wagers: Vec<_> = tried.iter().map(|candidate| candidate.wager).collect();
@@ -98,7 +86,8 @@ fn threads_and_a_kill_change_nothing_and_a_match_is_that_beside_it_up_to_the_edi
     let in_journal = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let player = JournalPlayer::open(&directory, "{}", Shard::WHOLE, 5, &STOPPED, &|_| {});
+            let player =
+                JournalPlayer::<LearningMatch>::open(&directory, "{}", Shard::WHOLE, 5, &STOPPED, &|_| {});
             round(&mut player.unwrap())
         })
     };
@@ -134,8 +123,8 @@ struct WithHarm;
 
 const HARMFUL: &str = "front/shot";
 
-impl MatchPlayer for WithHarm {
-    fn play_matches(&mut self, units: &[MatchUnit<'_>]) -> Result<Vec<LearningMatch>, PlayError> {
+impl<'u> Player<MatchUnit<'u>> for WithHarm {
+    fn play(&mut self, units: &[MatchUnit<'u>]) -> Result<Vec<Vec<LearningMatch>>, PlayError> {
         let played = units.iter().map(|MatchUnit { variant, work, beside }| {
             let id = |name: &str| variant.names().iter().position(|known| known == name).map(|n| n as u16);
             let harmed = id(HARMFUL).is_some();
@@ -155,21 +144,21 @@ impl MatchPlayer for WithHarm {
             };
             let felt = !harmed && beside.is_some();
             let ours = !harmed || work.index % 4 == 0;
-            LearningMatch {
+            vec![LearningMatch {
                 goals: [1 + u32::from(ours), 1],
                 decisions: plays.iter().map(decision).collect(),
                 listed: plays.iter().map(|(id, _)| *id).collect(),
                 marks: vec![Mark { at_ms: 15_000, ours, kind: MarkKind::ShotOpen }],
                 seconds: (0..90).map(|second| if second < 10 || harmed { second } else { !second }).collect(),
                 same_until_s: felt.then_some(10),
-            }
+            }]
         });
         Ok(played.collect())
     }
 }
 
 #[test]
-fn a_harmful_case_is_found_in_scenes_and_forgotten_and_not_where_chance_swaps_the_pairs() {
+fn a_harmful_case_is_forgotten_and_none_in_the_null_control() {
     let learned = |shuffle| {
         let settings = LearnSettings { budget: 1800, ..settings(shuffle) };
         learn_matches(authored(), Collected::default(), &settings, &mut WithHarm).unwrap()

@@ -17,11 +17,10 @@ use protocol::{CycleId, RobotId};
 use rules::{Colour, League};
 use serde::{Deserialize, Serialize};
 
-use crate::learning::journal::Playable;
+use crate::learning::player::{PlayError, Playable};
 use crate::learning::starts::StartStream;
 use crate::learning::trial::Situation;
 use crate::learning::variant::Variant;
-use crate::learning::work::PlayError;
 
 /// The teams that are played against, in turn.
 pub(crate) const OPPONENTS: [Team; 3] = Team::OPPONENTS;
@@ -33,11 +32,11 @@ pub(crate) const MATCH_S: f64 = 600.0;
 /// A match from its kick-off on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MatchWork {
-    /// What it is used for.
+    /// Use of the match.
     pub stream: StartStream,
-    /// Its number in the stream; opponent, colour and seed follow from it.
+    /// Number in the stream; opponent, colour and seed follow from it.
     pub index: u32,
-    /// Where it is left, simulated ms from its start.
+    /// Time from its start at which it is left, simulated ms.
     pub until_ms: u32,
 }
 
@@ -62,7 +61,7 @@ pub struct MatchDecision {
     /// Id of the case, in the library of the match.
     #[serde(rename = "c")]
     pub case: u16,
-    /// How the play ended, by its place in [`CycleEnd::DESCRIPTION`].
+    /// End of the play, by its place in [`CycleEnd::LABELS`].
     #[serde(rename = "e", default, skip_serializing_if = "Option::is_none")]
     pub end: Option<u8>,
     /// Whether a goal followed in the play's window of the ledger.
@@ -70,7 +69,7 @@ pub struct MatchDecision {
     pub goal: bool,
 }
 
-/// What a team did to the other's goal.
+/// Shot or goal of a team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MarkKind {
@@ -84,21 +83,21 @@ pub enum MarkKind {
     Goal,
 }
 
-/// A shot or goal.
+/// A shot or goal, and its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Mark {
-    /// When, simulated ms.
+    /// Time, simulated ms.
     #[serde(rename = "t")]
     pub at_ms: u32,
-    /// By our team.
+    /// Whether our team did it.
     #[serde(rename = "o")]
     pub ours: bool,
-    /// Which.
+    /// Kind of shot, or a goal.
     #[serde(rename = "k")]
     pub kind: MarkKind,
 }
 
-/// What learning keeps of a match.
+/// Record of a match for learning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LearningMatch {
     /// Goals, ours and theirs.
@@ -283,7 +282,7 @@ impl Recorder {
         let ended = |(id, decision): (CycleId, MatchDecision)| {
             let Some((cycle, followed)) = plays.get(&id) else { return decision };
             let end = cycle.end.map_or(CycleEnd::TrialOver, |(_, end)| end);
-            let place = CycleEnd::DESCRIPTION.iter().position(|label| *label == end.label());
+            let place = CycleEnd::LABELS.iter().position(|label| *label == end.label());
             let end = place.and_then(|place| u8::try_from(place).ok());
             MatchDecision { end, goal: *followed == Followed::Goal, ..decision }
         };

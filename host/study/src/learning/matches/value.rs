@@ -12,9 +12,9 @@ const GOALS_A_SHOT: [f64; 3] = [0.01, 0.18, 0.51];
 /// A goal within this time after a shot of its team is that shot's, ms, as in the ledger.
 const SHOT_BEFORE_MS: u32 = 2_000;
 /// A value counts as at most this, either way, goals: an open shot, so that one scene decides little.
-const MOST: f64 = 0.5;
+const VALUE_MAX: f64 = 0.5;
 /// Largest difference of two values.
-pub(crate) const DIFFERENCE_MAX: f64 = 2.0 * MOST;
+pub(crate) const DIFFERENCE_MAX: f64 = 2.0 * VALUE_MAX;
 
 /// The value of the scene that begins at `from_ms`.
 pub(crate) fn value(marks: &[Mark], from_ms: u32) -> f64 {
@@ -28,7 +28,7 @@ pub(crate) fn value(marks: &[Mark], from_ms: u32) -> f64 {
         };
         if mark.ours { goals } else { -goals }
     });
-    goals.sum::<f64>().clamp(-MOST, MOST)
+    goals.sum::<f64>().clamp(-VALUE_MAX, VALUE_MAX)
 }
 
 fn of_a_shot(marks: &[Mark], goal: Mark) -> bool {

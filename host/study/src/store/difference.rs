@@ -9,7 +9,7 @@ use foreign::printable;
 pub struct Difference {
     /// Name of the setting.
     pub what: &'static str,
-    /// Its value, or the hash of what is too long to print, in the first of both.
+    /// Value, or the hash of what is too long to print, in the first of both.
     pub own: String,
     /// The same in the second.
     pub other: String,
