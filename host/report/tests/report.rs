@@ -251,7 +251,7 @@ fn view_box(document: &roxmltree::Document<'_>) -> (f64, f64, f64, f64) {
 fn maps_are_drawn_with_what_they_count() {
     let config = TrialConfig::new(Scenario::DefenderAhead, Configuration::DefenderGoalie, Approach::Cases, 5);
     let cell = study::evaluation::EvaluationCell {
-        profile: study::evaluation::Profile::Simulated,
+        profile: arena::Profile::Simulated,
         configuration: config.opponents,
         scenario: config.scenario,
         approach: config.approach,

@@ -8,7 +8,7 @@ use clap::Args;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::strategy::{ROUND_1, Team};
 use rules::League;
-use study::store::{EvaluationError, csv_hash, to_csv};
+use study::store::{EvaluationError, Experiment, csv_hash, to_csv};
 use study::matches::MatchTeam;
 use study::scenes::{SceneEffect, ScenePlan, scene_effects, scene_table};
 
@@ -71,7 +71,7 @@ pub(super) fn run(args: &ScenesArgs) -> Result<ExitCode, Failure> {
     let (line, done, of) = (Progress::open(), AtomicU64::new(0), plan.len() as u64);
     line.set_text("playing");
     let on_played = || line.set(done.fetch_add(1, Ordering::Relaxed) + 1, of);
-    let rows = pool.install(|| plan.play(&on_played))?;
+    let rows = pool.install(|| plan.play_all(&on_played))?;
     drop(line);
     let csv = to_csv(&rows).map_err(EvaluationError::from)?;
     if let Some(file) = &args.csv {

@@ -9,6 +9,7 @@ use figures::{Table, row};
 use hil_sim::small_size::worlds::{WorldChoice, WorldPlan};
 use rules::League;
 use study::skills::{Skill, SkillPlan, SkillRow, TryResult, rows};
+use study::store::Experiment;
 
 use super::report::insert;
 use super::work;
@@ -71,7 +72,7 @@ pub(super) fn run(args: &SkillsArgs) -> Result<ExitCode, Failure> {
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
     let pool = pool.map_err(Failure::Threads)?;
-    let results = pool.install(|| plan.play())?;
+    let results = pool.install(|| plan.play_all(&|| ()))?;
     let table = rows(&plan, &results);
     if args.json {
         let json = serde_json::to_string(&table).map_err(|error| Failure::Output(error.into()))?;
