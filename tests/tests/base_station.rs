@@ -2,8 +2,8 @@
 //! lossy air, and six brains behind them: with a loss of 0 to 30 % robots obey their host, the host hears all
 //! of them, and none does what a robot must not (`firmware/nrf24`, docs/architecture.md §6).
 //!
-//! What each robot may believe is judged by a second implementation of the rules: a frame that nobody sent,
-//! or one a second time, is not among it.
+//! What each robot may believe is judged by a second implementation of the rules: a forged or repeated
+//! frame is not among it.
 
 use brain::{BrainConfig, Station};
 use geometry::{Field, Point, Pose};

@@ -126,14 +126,14 @@ struct Compared {
 }
 
 impl Compared {
-    fn tell(&self, least: usize) {
+    fn check_and_print(&self, least: usize) {
         eprintln!("{self:?}");
         assert!(self.problems >= least && self.losers > 0, "{self:?}");
         assert!(self.near_ties * 100 < self.problems.max(100), "{self:?}");
     }
 }
 
-/// The cycles of a team as told by beacons, and its robots' reports.
+/// The cycles of a team as beacons report them, and its robots' reports.
 #[derive(Default)]
 struct Ledger {
     cycles: CycleLog,
@@ -285,7 +285,7 @@ fn matches(seconds: f64) {
             std::fs::remove_file(file).expect("it was there");
         }
     }
-    compared.tell(200);
+    compared.check_and_print(200);
 }
 
 /// Whole matches take minutes: `DECISIONS_SECONDS=600 cargo test --release -p match-tests --test decisions`.
@@ -326,5 +326,5 @@ fn in_forty_trials_every_decision_is_explained_by_its_own_problem() {
         decided += trial.0.reports.len();
     }
     assert!(decided > 200, "{decided}");
-    compared.tell(200);
+    compared.check_and_print(200);
 }

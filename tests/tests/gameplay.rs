@@ -27,10 +27,7 @@ fn a_booting_robot_listens_for_one_lease_before_it_proposes() {
 #[test]
 fn a_pass_is_played_from_its_election_to_its_end() {
     let mut table = table(&[1, 3], Positioning::Dependent);
-    assert!(
-        table.until(2.0, |t| play(t, 3).is_some_and(|robots| robots == [1, 3])),
-        "robot 3 is told its part"
-    );
+    assert!(table.until(2.0, |t| play(t, 3).is_some_and(|robots| robots == [1, 3])), "robot 3 gets its part");
     assert!(table.until(3.0, |t| matches!(progress(t, 1), Progress::Execute { .. })), "the getter arrives");
     assert!(table.until(0.2, |t| matches!(progress(t, 3), Progress::Execute { .. })), "and all execute");
     assert!(table.until(10.0, |t| t.kicks.len() == 1), "the pass");

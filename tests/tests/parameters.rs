@@ -85,15 +85,15 @@ fn speed_and_acceleration_limits_slow_the_team_that_sets_them() {
 
 #[test]
 fn a_kick_gain_of_2_halves_the_ordered_speed() {
-    let usual = blue_and_yellow(120.0, &[]);
+    let default = blue_and_yellow(120.0, &[]);
     let kicks: Vec<String> =
         (0..6).map(|n| format!(r#"{{"key":"calibration.kick","robot":{n},"value":2.0}}"#)).collect();
     let changed = blue_and_yellow(120.0, &kicks.iter().map(String::as_str).collect::<Vec<_>>());
-    let [_, blue_usual] = usual;
+    let [_, blue_default] = default;
     let [yellow, blue] = changed;
-    let counts = [&blue_usual, &blue, &yellow].map(|team| team.kicks.len());
+    let counts = [&blue_default, &blue, &yellow].map(|team| team.kicks.len());
     assert!(counts.iter().all(|count| *count >= 5), "{counts:?} kicks: too few to compare");
-    let (before, after) = (median(blue_usual.kicks), median(blue.kicks));
+    let (before, after) = (median(blue_default.kicks), median(blue.kicks));
     assert!(after < before * 0.7, "{after} m/s with, {before} m/s without");
     assert!(median(yellow.kicks) > after * 1.3, "the other team kicks as before");
 }

@@ -445,7 +445,7 @@ fn telemetry_comes_ten_times_a_second_and_reports_a_lost_link() {
     });
     field.silent = true;
     let lost = |field: &TestField<'_>| field.telemetry[&one].1.condition.has(Condition::LINK_LOST);
-    let took = field.until(1.0, lost).expect("tells");
+    let took = field.until(1.0, lost).expect("a report of the lost link");
     assert!((0.095..0.15).contains(&took), "{took}");
 }
 

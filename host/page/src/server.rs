@@ -147,8 +147,8 @@ fn serve(stream: TcpStream, shared: &Shared, place: Place) {
             Err(NoRequest::Gone) => return,
         };
         if head.path == "/socket" {
-            match sit_down(shared, &head) {
-                Ok((seat, answer)) => return look_on(wire, shared, &head, answer, place, seat),
+            match admit(shared, &head) {
+                Ok(admission) => return look_on(wire, shared, &head, admission, place),
                 Err(answer) => {
                     if !matches!(guarded(answer).send(&mut wire, &head, closes), Ok(true)) {
                         return;
@@ -184,21 +184,27 @@ const HEADERS: [(&str, &str); 5] = [
     ("cache-control", "no-store"),
 ];
 
-/// A viewer's place and the answer that makes it a socket.
-fn sit_down(shared: &Shared, head: &Head) -> Result<(Seat, Answer), Answer> {
+/// A viewer's place and the answer that makes its connection a socket.
+struct Admission {
+    seat: Seat,
+    answer: Answer,
+}
+
+fn admit(shared: &Shared, head: &Head) -> Result<Admission, Answer> {
     if head.method != "GET" {
         return Err(Answer::bare(Status::NOT_ALLOWED).with("allow", "GET"));
     }
     let answer = socket::handshake(head)?;
     // Taken before the answer: of those that come at once none can pass while the others are not counted yet.
     match Seat::take(&shared.seats, shared.settings.limits.viewers) {
-        Some(seat) => Ok((seat, answer)),
-        None => Err(Answer::text(Status::UNAVAILABLE, "too many look on")),
+        Some(seat) => Ok(Admission { seat, answer }),
+        None => Err(Answer::text(Status::UNAVAILABLE, "too many viewers")),
     }
 }
 
 /// One viewer, until it goes.
-fn look_on(mut wire: Wire, shared: &Shared, head: &Head, answer: Answer, place: Place, seat: Seat) {
+fn look_on(mut wire: Wire, shared: &Shared, head: &Head, admission: Admission, place: Place) {
+    let Admission { seat, answer } = admission;
     let may_ask = shared.may_ask(head.asked("token"));
     let Ok(mut out) = wire.writer() else { return };
     if guarded(answer).send(&mut wire, head, Instant::now() + VIEWER_TIMEOUT).is_err() {

@@ -43,7 +43,8 @@ pub fn legs(library: &Library, case: &Case, ball: Point) -> Result<Vec<Leg>, Str
             }
             Some(Action::Pass(to)) => {
                 walkers[robot].rest = &walkers[robot].rest[1..];
-                let receiver = walkers.get_mut(to).filter(|_| to != robot).ok_or("a pass to nobody")?;
+                let receiver =
+                    walkers.get_mut(to).filter(|_| to != robot).ok_or("a pass to no other robot")?;
                 if receiver.next_ball_action(&shifted) != Some(Action::Receive(robot)) {
                     return Err(format!("tm{}'s pass is not received by tm{}", robot + 1, to + 1));
                 }

@@ -214,8 +214,9 @@ impl Run<'_> {
 }
 
 fn headquarters(plan: &Plan, epoch: u32, script: Script) -> Headquarters {
-    let usual = RadioSettings::new(TEAM, epoch);
-    let settings = RadioSettings { key: plan.key, relay: Relay::No, latency: Duration::millis(10), ..usual };
+    let defaults = RadioSettings::new(TEAM, epoch);
+    let settings =
+        RadioSettings { key: plan.key, relay: Relay::No, latency: Duration::millis(10), ..defaults };
     Headquarters::new(settings, Colour::Blue, GoalEnd::Negative, script)
 }
 

@@ -306,7 +306,7 @@ impl View {
     }
 }
 
-/// Columns and rows of a camera frame: a usual 5 MP camera.
+/// Columns and rows of a camera frame: a common 5 MP camera.
 const IMAGE_PIXELS: [u32; 2] = [2448, 2048];
 /// m beyond the field surface that outer cameras see: up to the walls of the hall.
 const OUTSIDE_VIEW: f32 = 2.0;

@@ -3,7 +3,7 @@
 
 mod codes;
 mod legacy;
-mod manners;
+mod profiles;
 
 use ssl::common::{Any, RobotId as WireId, Team};
 use ssl::simulation::{
@@ -197,7 +197,7 @@ fn fields_missing_in_a_teleport_stay_unchanged() {
     let ball = server.world().ball;
     assert_eq!((ball.position.x(), ball.position.y(), ball.height), (1.0, 0.5, 0.5));
     assert_eq!((ball.velocity.x(), ball.velocity.y()), (2.0, -1.0));
-    assert_eq!(ball.spin, ball.velocity, "told to roll");
+    assert_eq!(ball.spin, ball.velocity, "roll was set");
 
     let turn = TeleportRobot { id: blue(3), orientation: Some(1.0), ..Default::default() };
     let before = server.world().robot(own(3)).unwrap().pose;

@@ -141,13 +141,13 @@ struct Watch {
 
 impl Watch {
     fn new(plan: &Plan) -> Self {
-        let nobody = |colour| Who { colour, id: first() };
+        let keeper_0 = |colour| Who { colour, id: first() };
         Self {
             outcome: Outcome::default(),
             field: plan.league.field(),
             phase: Phase::Halt,
             phase_since: 0.0,
-            keepers: [nobody(Colour::Yellow), nobody(Colour::Blue)],
+            keepers: [keeper_0(Colour::Yellow), keeper_0(Colour::Blue)],
             changed: 0.0,
             ball_carried: false,
             ball: Point::default(),

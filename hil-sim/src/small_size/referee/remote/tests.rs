@@ -155,7 +155,7 @@ fn the_ball_is_placed_by_hand_only_where_no_team_may_place_it() {
     stage.ball(at(-2.0, 3.1), Vector::default());
     stage.next(Wire::DirectFreeBlue, spot);
     stage.run(9.0);
-    assert_eq!(stage.deeds, [], "blue may place, and the controller tells it to");
+    assert_eq!(stage.deeds, [], "blue may place, and the controller orders it to");
     stage.packet.game_events = vec![failed(Colour::Blue)];
     stage.command(Wire::Stop);
     stage.run(9.0);
@@ -280,7 +280,7 @@ fn a_surplus_robot_leaves_at_a_permitted_place_and_returns_after_the_card() {
         stage.ball(at(0.0, 0.0), Vector::default());
         stage.packet.blue.max_allowed_bots = Some(5);
         stage.run(12.0);
-        assert_eq!(stage.deeds, [], "in play nobody goes in among the robots");
+        assert_eq!(stage.deeds, [], "in play no robot is taken off");
         let leaving = who(Colour::Blue, 3);
         stage.world.put(leaving, Pose { position: at(x, y), heading: Angle::ZERO });
         stage.run(1.0);

@@ -111,27 +111,19 @@ fn a_goal_with_too_many_robots_does_not_count() {
 }
 
 #[test]
-fn a_ball_over_the_touch_line_is_a_free_kick_20_cm_inside() {
-    let stage = shoot(blue(1), at(1.0, 2.0), 0.0, 3.0);
-    assert_eq!(stage.phase(), Phase::Stop);
-    stage.only_by(Kind::LeftTouchLine, blue(1));
-    stage.assert_restart(Restart::FreeKick(Colour::Yellow), at(1.0, 2.8));
-}
-
-#[test]
-fn a_ball_over_the_goal_line_is_a_goal_kick_or_a_corner() {
-    let goal_kick = shoot(yellow(2), at(1.0, 1.5), 5.0, 0.0);
-    goal_kick.assert_restart(Restart::FreeKick(Colour::Blue), at(3.5, 2.8));
-    let corner = shoot(blue(2), at(1.0, -1.5), 5.0, 0.0);
-    corner.assert_restart(Restart::FreeKick(Colour::Yellow), at(4.3, -2.8));
-}
-
-#[test]
-fn in_division_b_a_kick_from_the_own_half_over_the_other_goal_line_is_aimless() {
-    let stage = shoot(yellow(2), at(-1.0, 1.5), 6.0, 0.0);
-    let event = stage.only(Kind::AimlessKick);
-    assert_eq!(event.by, Some(Colour::Yellow));
-    stage.assert_restart(Restart::FreeKick(Colour::Blue), at(-1.0, 1.5));
+fn a_ball_over_a_line_gives_the_others_a_free_kick_at_the_place_of_the_rules() {
+    // A throw-in 20 cm inside, a goal kick, a corner, and division B's aimless kick from the own half.
+    for (who, from, [x, y], kind, spot) in [
+        (blue(1), at(1.0, 2.0), [0.0, 3.0], Kind::LeftTouchLine, at(1.0, 2.8)),
+        (yellow(2), at(1.0, 1.5), [5.0, 0.0], Kind::LeftGoalLine, at(3.5, 2.8)),
+        (blue(2), at(1.0, -1.5), [5.0, 0.0], Kind::LeftGoalLine, at(4.3, -2.8)),
+        (yellow(2), at(-1.0, 1.5), [6.0, 0.0], Kind::AimlessKick, at(-1.0, 1.5)),
+    ] {
+        let stage = shoot(who, from, x, y);
+        assert_eq!(stage.phase(), Phase::Stop, "{kind:?}");
+        stage.only_by(kind, who);
+        stage.assert_restart(Restart::FreeKick(who.colour.other()), spot);
+    }
 }
 
 #[test]

@@ -53,7 +53,7 @@ fn every_error_code_of_teleports_and_pace_has_its_cause() {
         SimulatorControl { teleport_ball: Some(teleport), ..Default::default() }
     };
     let pace = |speed| SimulatorControl { simulation_speed: Some(speed), ..Default::default() };
-    let nobody = WireId { id: None, team: Some(Team::Blue as i32) };
+    let without_number = WireId { id: None, team: Some(Team::Blue as i32) };
     let teamless = WireId { id: Some(1), team: Some(Team::Unknown as i32) };
     let controls = [
         (ball(|t| (t.vx, t.vy) = (Some(30.0), Some(0.0))), "TOO_FAST"),
@@ -61,7 +61,7 @@ fn every_error_code_of_teleports_and_pace_has_its_cause() {
         (ball(|t| (t.z, t.by_force) = (Some(1.0), Some(true))), "UNSUPPORTED"),
         (robot(blue(1), |t| (t.v_x, t.v_y) = (Some(9.0), Some(0.0))), "TOO_FAST"),
         (robot(blue(1), |t| t.v_angular = Some(-900.0)), "TOO_FAST"),
-        (robot(nobody, |_| {}), "NO_SUCH_ID"),
+        (robot(without_number, |_| {}), "NO_SUCH_ID"),
         (robot(blue(16), |_| {}), "NO_SUCH_ID"),
         (robot(teamless, |_| {}), "NO_TEAM"),
         (robot(blue(14), |t| t.x = Some(1.0)), "UNKNOWN_ROBOT"),

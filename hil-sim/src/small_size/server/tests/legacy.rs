@@ -14,7 +14,7 @@ fn states(server: &mut Server, packet: &GrsimPacket) -> Vec<(u16, RobotsStatus)>
     let mut states = Vec::new();
     while let Some(Transmit { to, bytes }) = server.poll_transmit() {
         let Destination::Status(to) = to else { continue };
-        assert_eq!(to.ip(), from().ip(), "to whoever commanded");
+        assert_eq!(to.ip(), from().ip(), "to the sender of the commands");
         states.push((to.port(), RobotsStatus::decode(&bytes[..]).unwrap()));
     }
     states

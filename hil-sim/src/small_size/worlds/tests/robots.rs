@@ -7,27 +7,21 @@ use crate::small_size::referee::{InternalReferee, RefereeSettings};
 use rules::Colour;
 
 #[test]
-fn a_kick_gain_of_0_7_kicks_at_0_7_of_the_ordered_speed() {
-    let mut world = with_ball(|model| model.robots.kick_gain = [0.7, 0.7]);
-    let speed = kick_of(&mut world, yellow(1), 5.0, 0.0);
-    assert!((speed - 3.5).abs() < 1e-4, "{speed}");
-}
-
-#[test]
-fn the_chip_ratio_applies_to_chips_but_not_to_flat_kicks() {
-    let ratio = |model: &mut WorldModel| {
-        (model.robots.kick_gain, model.robots.chip_ratio) = ([0.9, 0.9], [0.8, 0.8]);
-    };
-    let [flat, chip] = [0.0, 0.7].map(|angle| kick_of(&mut with_ball(ratio), yellow(1), 4.0, angle));
-    assert!((flat - 3.6).abs() < 1e-4 && (chip - 2.88).abs() < 1e-4, "{flat} {chip}");
-}
-
-#[test]
-fn a_kick_gain_above_1_stays_within_the_kickers_limit() {
-    let mut world = with_ball(|model| {
-        (model.robots.kick_gain, model.parameters.kick.flat) = ([1.1, 1.1], 6.5);
-    });
-    assert!((kick_of(&mut world, yellow(1), 6.5, 0.0) - 6.5).abs() < 1e-4);
+fn kick_gain_and_chip_ratio_scale_kicks_within_the_kickers_limit() {
+    // Kick gain, chip ratio, flat limit, ordered speed and angle, speed of the ball.
+    for (gain, ratio, limit, ordered, angle, expected) in [
+        (0.7, 1.0, 8.0, 5.0, 0.0, 3.5),
+        (0.9, 0.8, 8.0, 4.0, 0.0, 3.6),
+        (0.9, 0.8, 8.0, 4.0, 0.7, 2.88),
+        (1.1, 1.0, 6.5, 6.5, 0.0, 6.5),
+    ] {
+        let mut world = with_ball(|model| {
+            (model.robots.kick_gain, model.robots.chip_ratio) = ([gain, gain], [ratio, ratio]);
+            model.parameters.kick.flat = limit;
+        });
+        let speed = kick_of(&mut world, yellow(1), ordered, angle);
+        assert!((speed - expected).abs() < 1e-4, "{gain} {ratio} {angle}: {speed}");
+    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `manners`: tests of the compatibility profiles of the league's other simulators, with the numbers of their
+//! `profiles`: tests of the compatibility profiles of the league's other simulators, with the numbers of their
 //! deviations.
 
 use super::*;
@@ -38,7 +38,7 @@ fn trap_09_answers_list_the_commanded_robots() {
     assert_eq!(codes(&mut erforce, &SimulatorCommand { control: Some(gone), config: None }), None);
     let reported = answers(&mut erforce, &both);
     assert_eq!((reported.len(), ids(&reported[0])), (1, vec![3]), "robot 0 is gone and says nothing");
-    assert!(answers(&mut erforce, &[]).is_empty(), "nobody was commanded");
+    assert!(answers(&mut erforce, &[]).is_empty(), "no robot was commanded");
 }
 
 #[test]
@@ -279,7 +279,7 @@ fn grsim_parks_robots_that_are_placed_far_off_the_field() {
     assert!(put(&mut grsim, 100.0).is_empty());
     assert!(!grsim.world().robot(own(4)).unwrap().present);
     assert_eq!(ids(&answers(&mut grsim, &[ahead(4, 1.0)])[0]), [4], "it is parked, not gone");
-    assert!(put(&mut grsim, 1.5).is_empty(), "and comes back without being told that it is present");
+    assert!(put(&mut grsim, 1.5).is_empty(), "and returns without `present`");
     assert!(grsim.world().robot(own(4)).unwrap().present);
     // Just outside the lines it stands on the field surface.
     assert!(put(&mut grsim, 4.7).is_empty());
