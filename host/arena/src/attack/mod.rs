@@ -19,6 +19,7 @@ mod look;
 
 use geometry::{Field, Point, Segment, Vector};
 use protocol::Who;
+use rules::contact::TOUCHES_WITHIN;
 use rules::limits::{BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS};
 use rules::{Colour, Phase};
 
@@ -302,9 +303,8 @@ fn open_share(look: &BallLook<'_>, team: Colour, at: Point<Field>) -> f32 {
 }
 
 const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];
-/// A robot whose centre is within this of the ball is at it, m: front plate and ball's radius are 0.09 to
-/// 0.111.
-const AT_BALL: f32 = 0.125;
+/// A robot whose centre is within this of the ball is at it, m.
+const AT_BALL: f32 = TOUCHES_WITHIN;
 /// An opponent this near the ball presses its owner, m.
 const PRESSES_WITHIN: f32 = 0.35;
 /// A ball lost within this time of being pressed was lost in a tackle or scrum, s.
