@@ -137,7 +137,7 @@ impl Failure {
     }
 
     /// A firmware image that cannot be read.
-    pub(crate) fn unreadable(image: &Path, why: impl std::fmt::Display) -> Self {
+    pub(crate) fn unreadable(image: &Path, why: &dyn std::fmt::Display) -> Self {
         Self::Firmware(vec![format!("{}: {why}", image.display())])
     }
 }

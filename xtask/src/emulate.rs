@@ -24,8 +24,8 @@ pub(crate) fn emulate(arguments: &[String]) -> Result<(), Failure> {
     };
     let image = Path::new(image);
     let qemu = ensure_qemu(Install::ForUser).map_err(Failure::Qemu)?;
-    let bytes = fs::read(image).map_err(|error| Failure::unreadable(image, error))?;
-    if let Some(tests) = tests_in(&bytes).map_err(|error| Failure::unreadable(image, error))? {
+    let bytes = fs::read(image).map_err(|error| Failure::unreadable(image, &error))?;
+    if let Some(tests) = tests_in(&bytes).map_err(|error| Failure::unreadable(image, &error))? {
         return run_tests(&qemu, image, &tests, arguments);
     }
     let mut command = Command::new(qemu);

@@ -22,8 +22,8 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     let mut faults = Vec::new();
     for program in Program::images() {
         let path = firmware_build::build_program(context.root(), program).map_err(Failure::Image)?;
-        let bytes = fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
-        let image = Image::parse(&bytes).map_err(|error| Failure::unreadable(&path, error))?;
+        let bytes = fs::read(&path).map_err(|error| Failure::unreadable(&path, &error))?;
+        let image = Image::parse(&bytes).map_err(|error| Failure::unreadable(&path, &error))?;
         let sizes = Sizes::of(&image);
         println!("xtask: {}: {} B flash, {} B RAM", path.display(), sizes.flash, sizes.ram);
         if let Err(over) = program.budget().check(&sizes) {

@@ -22,8 +22,8 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
         let real = boards().iter().filter(|board| board.firmware.is_some()).map(Program::Board);
         for program in real.chain([Program::Free, Program::Robot(ImageBody::Omni)]) {
             let path = build_for_robot(context.root(), program, name, name).map_err(Failure::Image)?;
-            let bytes = fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
-            let image = Image::parse(&bytes).map_err(|error| Failure::unreadable(&path, error))?;
+            let bytes = fs::read(&path).map_err(|error| Failure::unreadable(&path, &error))?;
+            let image = Image::parse(&bytes).map_err(|error| Failure::unreadable(&path, &error))?;
             let sizes = Sizes::of(&image);
             println!("xtask: {name}: {}: {} B flash, {} B RAM", program.name(), sizes.flash, sizes.ram);
             if let Err(over) = program.budget().check(&sizes) {
