@@ -1,12 +1,14 @@
 //! `workspace`: the repository's files and their lines, for tests that read the project itself.
 
 mod manifest;
+mod product;
 
 use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 pub use manifest::{Manifest, members};
+pub use product::{Product, product, product_lines};
 
 /// Path of the workspace.
 pub fn root() -> PathBuf {

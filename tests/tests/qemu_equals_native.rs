@@ -2,7 +2,7 @@
 //! (docs/architecture.md §2.5, §7.2).
 //!
 //! Each robot runs in a QEMU of its own; trace hashes are computed by the simulator, so by the same code for
-//! both. Needs QEMU and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` provides
+//! both. Needs QEMU and a compiler for the target; `cargo xtask test --only qemu` provides
 //! both.
 
 use std::fs;

@@ -3,7 +3,7 @@
 //!
 //! The firmware image `onetwo-mps2-free` under QEMU in real time, its radio a serial line on the emulator's
 //! standard streams. Timeouts are generous: awaited events must come, how soon depends on the machine. Needs
-//! QEMU and a compiler for the target (feature `qemu`).
+//! QEMU and a compiler for the target.
 
 use std::fs;
 use std::io::{Read, Write};

@@ -1,6 +1,6 @@
 //! `qemu_image`: tests of the firmware image and of the emulator.
 //!
-//! Needs QEMU and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` provides both.
+//! Needs QEMU and a compiler for the target; `cargo xtask test --only qemu` provides both.
 
 use std::fs;
 use std::process::{Command, Stdio};

@@ -2,8 +2,8 @@
 //! and referee around them are the same; the match's hash is compared after every tick (docs/architecture.md
 //! §2.5, §7.2).
 //!
-//! `ONETWO_MATCH_SECONDS=60 cargo test --release -p match-tests --features qemu --test qemu_match` plays
-//! longer. Needs QEMU and a compiler for the target (feature `qemu`).
+//! `ONETWO_MATCH_SECONDS=60 cargo test --release -p match-tests --test qemu_match` plays
+//! longer. Needs QEMU and a compiler for the target.
 
 use firmware_build::inspect::{STACK_BUDGET, STEP_BUDGET};
 use match_tests::hil::{Pair, WORST_OF_LONG};

@@ -2,7 +2,7 @@
 //! (docs/architecture.md §9).
 //!
 //! `cargo xtask bench motion` prints the same counts, and those of this machine.
-//! Needs QEMU and a compiler for the target (feature `qemu`).
+//! Needs QEMU and a compiler for the target.
 
 #[path = "../benches/motion/figures.rs"]
 #[allow(dead_code, reason = "the bench prints what is not judged")]

@@ -2,7 +2,7 @@
 //! (docs/architecture.md §9).
 //!
 //! The built-in library on problems that robots retrieved for; `cargo xtask bench retrieval` has all bases
-//! and problems, and checks their budgets. Needs QEMU and a compiler for the target (feature `qemu`).
+//! and problems, and checks their budgets. Needs QEMU and a compiler for the target.
 
 #[path = "../benches/retrieval/figures.rs"]
 #[allow(dead_code, reason = "the bench prints what is not judged")]

@@ -3,7 +3,7 @@
 //!
 //! Three robots of ours, each once native and once in a QEMU of its own, receive the same packets of a host
 //! and of each other and see the same world; six opponents drive about. Needs QEMU and a compiler for the
-//! target (feature `qemu`).
+//! target.
 
 use std::path::PathBuf;
 use std::sync::LazyLock;

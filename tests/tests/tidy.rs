@@ -7,8 +7,14 @@
 
 #[path = "tidy/circles.rs"]
 mod circles;
+#[path = "tidy/counts.rs"]
+mod counts;
 #[path = "tidy/facts.rs"]
 mod facts;
+#[path = "tidy/size.rs"]
+mod size;
+#[path = "tidy/values.rs"]
+mod values;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -62,15 +68,17 @@ fn comments_are_no_wider_than_rustfmt_makes_code() {
 
 #[test]
 fn shared_arithmetic_goes_through_geometry_math() {
-    let sources = rust_sources().into_iter().filter(|source| {
-        source.is_under(&folders(&SAME_BITS)) && !source.path.starts_with("protocol/geometry/src/math")
-    });
+    let folders = folders(&SAME_BITS);
+    let sources = rust_sources()
+        .into_iter()
+        .filter(|source| source.is_under(&folders) && !source.path.starts_with("protocol/geometry/src/math"));
     check(&sources.collect::<Vec<_>>(), inexact_floats);
 }
 
 #[test]
 fn nalgebra_stays_within_geometry_and_without_its_roots_and_rotations() {
-    let sources = rust_sources().into_iter().filter(|source| source.is_under(&folders(&SAME_BITS)));
+    let folders = folders(&SAME_BITS);
+    let sources = rust_sources().into_iter().filter(|source| source.is_under(&folders));
     check(&sources.collect::<Vec<_>>(), |source| {
         let hint =
             "use geometry's own `norm`, `distance` and `Angle`: nalgebra's reach for libm's √ and sine";

@@ -22,7 +22,7 @@ pub(crate) fn write(context: &Context) -> Result<(), Failure> {
     }
     text.push_str(TAIL);
     let file = context.root().join("docs/budgets.md");
-    fs::write(&file, text).map_err(|error| Failure::Start { line: file.display().to_string(), error })?;
+    fs::write(&file, text).map_err(|error| Failure::at(&file, error))?;
     println!("xtask: written: docs/budgets.md");
     judge(&parts.into_iter().flat_map(|(_, _, rows)| rows).collect::<Vec<_>>())
 }

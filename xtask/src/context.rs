@@ -4,11 +4,11 @@
 use std::cell::OnceCell;
 use std::env;
 use std::ffi::OsStr;
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
 use firmware_build::{Board, BuildError, QemuError, TargetError, ThumbToolchain};
+use thiserror::Error;
 
 /// The workspace and its tools. A tool is searched for once, when the first step needs it.
 pub(crate) struct Context {
@@ -53,26 +53,27 @@ impl Context {
 
     /// The compiler for the robot's processor, installed first where it is missing.
     pub(crate) fn ensure_target(&self) -> Result<&ThumbToolchain, Failure> {
-        let look = || firmware_build::ensure_target(&self.root);
-        self.target.get_or_init(look).as_ref().map_err(|error| Failure::Target(error.clone()))
+        let target = self.target.get_or_init(|| firmware_build::ensure_target(&self.root));
+        target.as_ref().map_err(|error| Failure::Target(error.clone()))
     }
 
     /// A component of the toolchain (`fmt`, `clippy`), fetched by rustup where it is missing.
     pub(crate) fn ensure_component(&self, verb: &str, component: &'static str) -> Result<(), Failure> {
-        let is_there = || {
-            let mut question = self.cargo(verb);
-            question.arg("--version").stdout(Stdio::null()).stderr(Stdio::null());
-            question.status().is_ok_and(|status| status.success())
-        };
-        if is_there() {
+        if answers(&mut self.cargo(verb)) {
             return Ok(());
         }
         let mut add = Command::new("rustup");
         add.current_dir(&self.root).args(["component", "add", component]);
         // The next check shows whether it helped.
         let _ = run(&mut add);
-        if is_there() { Ok(()) } else { Err(Failure::Component(component)) }
+        if answers(&mut self.cargo(verb)) { Ok(()) } else { Err(Failure::Component(component)) }
     }
+}
+
+/// Whether a program is there: it prints its version.
+pub(crate) fn answers(program: &mut Command) -> bool {
+    program.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    program.status().is_ok_and(|status| status.success())
 }
 
 /// Runs a command to its end, with this program's standard output and error.
@@ -87,60 +88,57 @@ pub(crate) fn run(command: &mut Command) -> Result<(), Failure> {
 }
 
 /// Why a step failed.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 pub(crate) enum Failure {
     /// A command failed; its own output is printed above.
+    #[error("`{line}` failed ({status})")]
     Command { line: String, status: ExitStatus },
-    /// A command could not be started.
+    #[error("`{line}` does not start: {error}")]
     Start { line: String, error: std::io::Error },
     /// A part of the toolchain is missing.
+    #[error("{0} is missing; install it with `rustup component add {0}`")]
     Component(&'static str),
     /// No compiler for the robot's processor.
+    #[error("{0}")]
     Target(TargetError),
     /// No emulator.
+    #[error("{0}")]
     Qemu(QemuError),
-    /// No browser for tests of the page.
+    #[error(
+        "no Chromium is found: install it (Debian: apt-get install chromium), or name one in ONETWO_BROWSER"
+    )]
     Browser,
-    /// No Python for tests of the Python package.
+    #[error(
+        "no Python of 3.11 or later that makes virtual environments is found: install it (Debian: apt-get install \
+         python3 python3-venv)"
+    )]
     Python,
     /// The firmware image cannot be built.
+    #[error("{0}")]
     Image(BuildError),
     /// A firmware image is too large, or contains a panic that is not permitted.
+    #[error("the firmware\n  {}", .0.join("\n  "))]
     Firmware(Vec<String>),
     /// A budget of docs/architecture.md §9 is exceeded.
+    #[error("over the budget: {0}")]
     Budget(String),
     /// The same trial gave different traces, or none.
+    #[error("{} trials differ or fail\n  {}", .0.len(), .0.join("\n  "))]
     Determinism(Vec<String>),
+    /// Figures of the documentation cannot be made as asked.
+    #[error("{0}")]
+    Documentation(String),
 }
 
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Command { line, status } => write!(f, "`{line}` failed ({status})"),
-            Self::Start { line, error } => write!(f, "`{line}` does not start: {error}"),
-            Self::Component(name) => {
-                write!(f, "{name} is missing; install it with `rustup component add {name}`")
-            }
-            Self::Target(error) => error.fmt(f),
-            Self::Qemu(error) => error.fmt(f),
-            Self::Browser => f.write_str(
-                "no Chromium is found: install it (Debian: apt-get install chromium), or name one in ONETWO_BROWSER",
-            ),
-            Self::Python => f.write_str(
-                "no Python of 3.11 or later that makes virtual environments is found: install it (Debian: apt-get install \
-                 python3 python3-venv)",
-            ),
-            Self::Image(error) => error.fmt(f),
-            Self::Firmware(faults) => {
-                write!(f, "the firmware")?;
-                faults.iter().try_for_each(|fault| write!(f, "\n  {fault}"))
-            }
-            Self::Budget(what) => write!(f, "over the budget: {what}"),
-            Self::Determinism(trials) => {
-                write!(f, "{} trials differ or fail", trials.len())?;
-                trials.iter().try_for_each(|trial| write!(f, "\n  {trial}"))
-            }
-        }
+impl Failure {
+    /// A file or directory that cannot be read or written.
+    pub(crate) fn at(path: &Path, error: std::io::Error) -> Self {
+        Self::Start { line: path.display().to_string(), error }
+    }
+
+    /// A firmware image that cannot be read.
+    pub(crate) fn unreadable(image: &Path, why: &dyn std::fmt::Display) -> Self {
+        Self::Firmware(vec![format!("{}: {why}", image.display())])
     }
 }
 

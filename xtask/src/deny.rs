@@ -1,15 +1,15 @@
 //! `deny`: licences, sources and known faults of every dependency, by cargo-deny and the rules in
 //! `deny.toml`.
 //!
-//! cargo-deny is installed from crates.io where it is missing: 3.7 minutes of one core, once, into the target
-//! directory, which CI keeps. Known faults (RustSec's advisories) need a database from the network. Where it
-//! is unavailable the step reports that they were not checked, and passes: licences and sources do not depend
-//! on it.
+//! cargo-deny is installed from crates.io where it is missing, once, into the target directory, which CI
+//! keeps; without optimizations, since it runs for seconds. Known faults (RustSec's advisories) need a
+//! database from the network. Where it is unavailable the step reports that they were not checked, and
+//! passes: licences and sources do not depend on it.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
-use crate::context::{Context, Failure, run};
+use crate::context::{Context, Failure, answers, run};
 
 /// The property checked by the step.
 pub(crate) const WHAT: &str =
@@ -21,18 +21,19 @@ const VERSION: &str = "0.20.2";
 /// Runs it.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     let tool = ensure(context)?;
-    let deny = |line: &str| {
-        let mut command = Command::new(&tool);
-        command.current_dir(context.root()).args(line.split(' '));
-        command
-    };
-    run(&mut deny("--locked --all-features check licenses bans sources"))?;
+    deny(context, &tool, "check licenses bans sources")?;
     // Fetched by a separate command, so that an unavailable database is distinguished from a found fault.
-    if run(&mut deny("--locked fetch db")).is_err() {
+    if deny(context, &tool, "fetch db").is_err() {
         println!("{NOT_CHECKED}");
         return Ok(());
     }
-    run(&mut deny("--locked --all-features check advisories"))
+    deny(context, &tool, "check advisories")
+}
+
+fn deny(context: &Context, tool: &Path, line: &str) -> Result<(), Failure> {
+    let mut command = Command::new(tool);
+    command.current_dir(context.root()).args(["--locked", "--all-features"]);
+    run(command.args(line.split(' ')))
 }
 
 const NOT_CHECKED: &str = "\
@@ -44,10 +45,12 @@ fn ensure(context: &Context) -> Result<PathBuf, Failure> {
     let name = format!("cargo-deny{}", std::env::consts::EXE_SUFFIX);
     let ours = tools(context);
     let own = ours.join("bin").join(&name);
-    if let Some(there) = [PathBuf::from(name), own.clone()].into_iter().find(|tool| answers(tool)) {
+    if let Some(there) =
+        [PathBuf::from(name), own.clone()].into_iter().find(|tool| answers(&mut Command::new(tool)))
+    {
         return Ok(there);
     }
-    let mut install = context.cargo("install cargo-deny --locked --version");
+    let mut install = context.cargo("install cargo-deny --debug --locked --version");
     install.arg(VERSION).arg("--root").arg(&ours);
     run(&mut install)?;
     Ok(own)
@@ -58,12 +61,6 @@ fn tools(context: &Context) -> PathBuf {
     let target =
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| context.root().join("target"), PathBuf::from);
     context.root().join(target).join("tools")
-}
-
-fn answers(tool: &Path) -> bool {
-    let mut question = Command::new(tool);
-    question.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    question.status().is_ok_and(|status| status.success())
 }
 
 #[cfg(test)]
@@ -78,8 +75,8 @@ mod tests {
 
     #[test]
     fn a_tool_that_is_not_there_does_not_answer() {
-        assert!(!answers(Path::new("onetwo-has-no-such-program")));
-        assert!(answers(Path::new("cargo")));
+        assert!(!answers(&mut Command::new("onetwo-has-no-such-program")));
+        assert!(answers(&mut Command::new("cargo")));
     }
 
     #[test]

@@ -21,18 +21,17 @@ pub(crate) fn run(context: &Context) -> Result<(), Failure> {
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
     // `onetwo` builds the firmware image by itself; that needs a compiler for the target.
     context.ensure_target()?;
-    // Release as `cargo run` builds it, so that it is the program a person runs; debug with the features of
-    // the tests.
-    context::run(&mut context.cargo("build --features onetwo/png --bin onetwo"))?;
+    // Release as `cargo run` builds it, so that it is the program a person runs; debug as the tests do, which
+    // have built it already.
+    context::run(&mut context.cargo("test --workspace --features onetwo/png --no-run"))?;
     context::run(&mut context.cargo("build --release --bin onetwo"))?;
-    let built = |directory: &str| {
-        let name = format!("onetwo{}", std::env::consts::EXE_SUFFIX);
-        firmware_build::target_dir(context.root()).join(directory).join(name)
-    };
+    let target = firmware_build::target_dir(context.root());
+    let [debug, release] = ["debug", "release"]
+        .map(|profile| target.join(profile).join(format!("onetwo{}", std::env::consts::EXE_SUFFIX)));
     let players = [
-        Player { what: "debug", program: built("debug"), backend: "native" },
-        Player { what: "release", program: built("release"), backend: "native" },
-        Player { what: "QEMU", program: built("release"), backend: "qemu" },
+        Player { what: "debug", program: debug, backend: "native" },
+        Player { what: "release", program: release.clone(), backend: "native" },
+        Player { what: "QEMU", program: release, backend: "qemu" },
     ];
     let mut differing = Vec::new();
     let mut hashes = BTreeSet::new();
@@ -59,22 +58,30 @@ type Played = [Result<String, String>; 3];
 fn play(root: &Path, players: &[Player; 3]) -> Vec<(Trial, Played)> {
     let trials: Vec<Trial> = trials().collect();
     let next = AtomicUsize::new(0);
-    let take = || trials.get(next.fetch_add(1, Ordering::Relaxed));
-    let some = || {
-        let one = |trial: &Trial| {
-            let played = players.each_ref().map(|player| player.trace_hash(root, *trial));
-            println!("xtask: {trial}: {}", difference_text(players, &played));
-            (*trial, played)
-        };
-        std::iter::from_fn(take).map(one).collect::<Vec<_>>()
-    };
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
-        let all: Vec<_> = (0..cores).map(|_| scope.spawn(some)).collect();
+        let all: Vec<_> =
+            (0..cores).map(|_| scope.spawn(|| play_waiting(root, players, &trials, &next))).collect();
         all.into_iter()
             .flat_map(|one| one.join().expect("a trial that cannot be played is an answer"))
             .collect()
     })
+}
+
+/// Plays the trials from number `next` on that no other thread has taken.
+fn play_waiting(
+    root: &Path,
+    players: &[Player; 3],
+    trials: &[Trial],
+    next: &AtomicUsize,
+) -> Vec<(Trial, Played)> {
+    let mut results = Vec::new();
+    while let Some(trial) = trials.get(next.fetch_add(1, Ordering::Relaxed)) {
+        let played = players.each_ref().map(|player| player.trace_hash(root, *trial));
+        println!("xtask: {trial}: {}", difference_text(players, &played));
+        results.push((*trial, played));
+    }
+    results
 }
 
 /// A trial of the paper with full brains.

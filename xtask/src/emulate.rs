@@ -23,10 +23,9 @@ pub(crate) fn emulate(arguments: &[String]) -> Result<(), Failure> {
         return Err(Failure::Firmware(vec!["emulate needs an image".into()]));
     };
     let image = Path::new(image);
-    let unreadable = |why: String| Failure::Firmware(vec![format!("{}: {why}", image.display())]);
     let qemu = ensure_qemu(Install::ForUser).map_err(Failure::Qemu)?;
-    let bytes = fs::read(image).map_err(|error| unreadable(error.to_string()))?;
-    if let Some(tests) = tests_in(&bytes).map_err(|error| unreadable(error.to_string()))? {
+    let bytes = fs::read(image).map_err(|error| Failure::unreadable(image, &error))?;
+    if let Some(tests) = tests_in(&bytes).map_err(|error| Failure::unreadable(image, &error))? {
         return run_tests(&qemu, image, &tests, arguments);
     }
     let mut command = Command::new(qemu);

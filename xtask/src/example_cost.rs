@@ -3,8 +3,10 @@
 //!
 //! So many times and twice as many: the difference is free of everything that happens once.
 
+use std::path::Path;
+
 use crate::context::{Context, Failure};
-use crate::cost::{Row, counted, release};
+use crate::cost::{Row, counted, judge, release, table, write_between};
 
 /// An example that takes the name of a part and how often to do it.
 pub(crate) struct Example {
@@ -19,13 +21,24 @@ impl Example {
         let Self { package, name, parts } = self;
         let build = format!("-p {package} --example {name}");
         let program = release(context, &build, &format!("examples/{name}"))?;
-        let row = |part: &Part| {
-            let count = |times: u32| Ok(counted(&program, [part.label, &times.to_string()])?.0);
-            let each = (count(2 * part.count)? - count(part.count)?) / f64::from(part.count);
-            Ok(Row::new(part.what, each, part.most))
-        };
-        parts.iter().map(row).collect()
+        parts.iter().map(|part| part.row(&program)).collect()
     }
+}
+
+impl Part {
+    /// Instructions of one: the difference of a run of twice as many and one of so many.
+    fn row(&self, program: &Path) -> Result<Row, Failure> {
+        let [once, twice] = [self.count, 2 * self.count]
+            .map(|times| counted(program, [self.label, &times.to_string()]).map(|(count, _)| count));
+        Ok(Row::new(self.what, (twice? - once?) / f64::from(self.count), self.most))
+    }
+}
+
+/// Counts the simulator's parts and writes their table into hil-sim/README.md.
+pub(crate) fn write_simulator(context: &Context) -> Result<(), Failure> {
+    let rows = SIMULATOR.rows(context)?;
+    write_between("hil-sim/README.md", "simulator table", &table(&rows))?;
+    judge(&rows)
 }
 
 struct Part {
@@ -42,8 +55,11 @@ const fn part(label: &'static str, what: &'static str, count: u32, most: Option<
     Part { label, what, count, most }
 }
 
-/// docs/architecture.md §9: one pass location evaluated.
-const PASS_LOCATION: f64 = 2_000.0;
+/// Budget of docs/architecture.md §9 for one pass location, instructions.
+const PASS_LOCATION_MAX: f64 = 2_000.0;
+/// Budget of docs/architecture.md §9 for a simulated second of eleven against eleven with packets,
+/// instructions.
+const SIMULATOR_SECOND_MAX: f64 = 10e6;
 /// Places: a multiple of the 200 of a search, on all 64 scenes.
 const PLACES: u32 = 12_800;
 /// Ticks of the defence: eight of each of the 64 scenes.
@@ -58,12 +74,17 @@ pub(crate) const STRATEGY: Example = Example {
     package: "host",
     name: "strategy_cost",
     parts: &[
-        part("pass-search-six", "a pass location in a search, six against six", PLACES, Some(PASS_LOCATION)),
+        part(
+            "pass-search-six",
+            "a pass location in a search, six against six",
+            PLACES,
+            Some(PASS_LOCATION_MAX),
+        ),
         part(
             "pass-search",
             "a pass location in a search, eleven against eleven",
             PLACES,
-            Some(PASS_LOCATION),
+            Some(PASS_LOCATION_MAX),
         ),
         part("pass-location-six", "a pass location rated in full, six against six", PLACES, None),
         part("pass-location", "a pass location rated in full, eleven against eleven", PLACES, None),
@@ -88,7 +109,7 @@ pub(crate) const SIMULATOR: Example = Example {
             None,
         ),
         part("cameras", "and four cameras at 75 Hz", SECONDS, None),
-        part("packets", "and their packets encoded", SECONDS, Some(10e6)),
+        part("packets", "and their packets encoded", SECONDS, Some(SIMULATOR_SECOND_MAX)),
         part(
             "restless",
             "the same with robots that all speed up and turn all the time and two that fight for the ball",

@@ -18,8 +18,7 @@ pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     let feeder = release(context, "-p onetwo-host --example host_cost", "examples/host_cost")?;
     let directory = firmware_build::target_dir(context.root()).join("bench-game");
     let _ = fs::remove_dir_all(&directory);
-    let wrong = |error| Failure::Start { line: directory.display().to_string(), error };
-    fs::create_dir_all(&directory).map_err(wrong)?;
+    fs::create_dir_all(&directory).map_err(|error| Failure::at(&directory, error))?;
     let mut match_of_eleven = Command::new(&onetwo);
     match_of_eleven.args("play --headless --league division-a --seed 1 --json --duration".split(' '));
     match_of_eleven.args([&SECONDS.to_string(), "--record"]).arg(directory.join("match"));
@@ -28,18 +27,20 @@ pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     let mean = rounds.iter().sum::<f64>() / rounds.len() as f64;
     let late = rounds[rounds.len() - 1 - rounds.len() / 1000];
     let _ = fs::remove_dir_all(&directory);
-    let played = |seconds: u32| {
-        let line = format!("play --headless --seed 1 --json --duration {seconds}");
-        Ok::<_, Failure>(counted(&onetwo, line.split(' '))?.0)
-    };
-    let second = (played(2 * SECONDS)? - played(SECONDS)?) / f64::from(SECONDS);
+    let second = (played(&onetwo, 2 * SECONDS)? - played(&onetwo, SECONDS)?) / f64::from(SECONDS);
     let host = "host, 11 v 11, from a packet of vision to the commands";
     Ok(vec![
-        Row::new(format!("{host}: mean of {} packets", rounds.len()), mean, Some(10e6)),
-        Row::new(format!("{host}: 999 of 1,000 at most"), late, Some(25e6)),
+        Row::new(format!("{host}: mean of {} packets", rounds.len()), mean, Some(PACKET_MEAN_MAX)),
+        Row::new(format!("{host}: 999 of 1,000 at most"), late, Some(PACKET_LATE_MAX)),
         Row::new(format!("{host}: worst"), rounds[rounds.len() - 1], None),
-        Row::new("a second of 6 v 6 with two whole teams, simulator and all", second, Some(300e6)),
+        Row::new("a second of 6 v 6 with two whole teams, simulator and all", second, Some(GAME_SECOND_MAX)),
     ])
+}
+
+/// Instructions of a match of so many seconds.
+fn played(onetwo: &Path, seconds: u32) -> Result<f64, Failure> {
+    let line = format!("play --headless --seed 1 --json --duration {seconds}");
+    Ok(counted(onetwo, line.split(' '))?.0)
 }
 
 /// Instructions of each packet, rising.
@@ -77,6 +78,11 @@ fn total(dump: &str) -> Option<f64> {
     dump.lines().find_map(|line| line.strip_prefix("totals:")?.trim().parse().ok())
 }
 
+/// Budgets of docs/architecture.md §9, instructions: a packet of vision, 11 v 11, on average and for 999 of
+/// 1,000; a second of 6 v 6.
+const PACKET_MEAN_MAX: f64 = 10e6;
+const PACKET_LATE_MAX: f64 = 25e6;
+const GAME_SECOND_MAX: f64 = 300e6;
 /// Simulated seconds of either match.
 const SECONDS: u32 = 20;
 /// The function that is counted call by call.

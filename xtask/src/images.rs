@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use firmware_build::inspect::{Allowed, Image, Sizes, panic_sites};
-use firmware_build::{Board, Program, boards};
+use firmware_build::{Program, boards};
 
 use crate::context::{Context, Failure};
 
@@ -22,9 +22,8 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     let mut faults = Vec::new();
     for program in Program::images() {
         let path = firmware_build::build_program(context.root(), program).map_err(Failure::Image)?;
-        let unreadable = |why: String| Failure::Firmware(vec![format!("{}: {why}", path.display())]);
-        let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
-        let image = Image::parse(&bytes).map_err(|error| unreadable(error.to_string()))?;
+        let bytes = fs::read(&path).map_err(|error| Failure::unreadable(&path, &error))?;
+        let image = Image::parse(&bytes).map_err(|error| Failure::unreadable(&path, &error))?;
         let sizes = Sizes::of(&image);
         println!("xtask: {}: {} B flash, {} B RAM", path.display(), sizes.flash, sizes.ram);
         if let Err(over) = program.budget().check(&sizes) {
@@ -51,8 +50,8 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
 
 /// The common list, and those of boards that have one of their own.
 fn allowed_places(context: &Context) -> Result<String, Failure> {
-    let own = |board: &Board| format!("firmware/boards/{}/{OWN_LIST}", board.name);
-    let own = boards().iter().map(own).filter(|list| context.root().join(list).is_file());
+    let lists = boards().iter().map(|board| format!("firmware/boards/{}/{OWN_LIST}", board.name));
+    let own = lists.filter(|list| context.root().join(list).is_file());
     let mut text = String::new();
     for list in std::iter::once(LIST.to_owned()).chain(own) {
         let part = fs::read_to_string(context.root().join(&list));

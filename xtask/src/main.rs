@@ -10,6 +10,7 @@ mod context;
 mod cost;
 mod deny;
 mod determinism;
+mod docs;
 mod emulate;
 mod evaluation;
 mod example_cost;
@@ -68,7 +69,9 @@ fn test(steps: &[&'static Step]) -> ExitCode {
     if let Some(warning) = space::warning(context.root()) {
         eprintln!("xtask: {warning}");
     }
-    let outcomes: Vec<_> = steps.iter().map(|step| report::run(step, &context)).collect();
+    let numbered = (1..).zip(steps);
+    let outcomes: Vec<_> =
+        numbered.map(|(number, step)| report::run(step, (number, steps.len()), &context)).collect();
     println!("{}", report::summary(&outcomes));
     if outcomes.iter().all(|outcome| outcome.failure.is_none()) {
         ExitCode::SUCCESS

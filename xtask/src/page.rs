@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use std::{env, fs, thread};
 
-use crate::context::{Context, Failure, run};
+use crate::context::{Context, Failure, answers, run};
 use crate::cost::write_between;
 
 /// The property checked by the step.
@@ -19,8 +19,16 @@ const NAMES: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "goog
 /// The tests in the browser, one after the other: each has a match and a browser of its own.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     ensure_browser()?;
-    run(&mut context
-        .cargo("test --package onetwo --features browser --test page_browser -- --test-threads 1"))
+    // The selection and features of the step `test`, so that nothing is built again.
+    let line = "test --workspace --features onetwo/png --test page_browser -- --test-threads 1";
+    run(&mut context.cargo(line))
+}
+
+/// The tests of the program, in a browser too, with what is held on an idle machine alone.
+pub(crate) fn soak(context: &Context) -> Result<(), Failure> {
+    ensure_browser()?;
+    let tests = "--test halt_cli --test net_cli --test page_browser -- --nocapture --test-threads 1";
+    run(context.cargo(&format!("test --workspace --features onetwo/png {tests}")).env("ONETWO_SOAK", "1"))
 }
 
 /// Takes the documentation's screenshots again.
@@ -40,13 +48,13 @@ fn tour(context: &Context, description: &str) -> Result<(), Failure> {
 fn frames(context: &Context, program: &Path) -> Result<String, Failure> {
     let mut tour = context.cargo("run --release --package page-browser --example tour --");
     tour.arg(program).arg("frames").stderr(Stdio::inherit());
-    let failed = |error| Failure::Start { line: "tour frames".to_owned(), error };
-    let out = tour.output().map_err(failed)?;
+    let line = "tour frames".to_owned();
+    let out = tour.output().map_err(|error| Failure::Start { line: line.clone(), error })?;
     let printed = String::from_utf8_lossy(&out.stdout).trim().to_owned();
     if out.status.success() && !printed.is_empty() {
         Ok(printed)
     } else {
-        Err(failed(io::Error::other(printed)))
+        Err(Failure::Start { line, error: io::Error::other(printed) })
     }
 }
 
@@ -66,8 +74,8 @@ pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
     println!("{frame}");
     run(&mut context.cargo("build --release --package onetwo-page --example viewers"))?;
     let alone = count(&program, "")?;
-    let watched = count(&program, READING)?;
-    let slow = count(&program, SLOW)?;
+    let watched = count(&program, READING_VIEWERS)?;
+    let slow = count(&program, SLOW_VIEWERS)?;
     let more = |with: &Counted| with.instructions as f64 / alone.instructions as f64 - 1.0;
     let viewers = format!(
         "a tick of the match's thread (simulator, both hosts, the scenes shown) takes {:.0} k instructions without viewers, {:+.3} % with \
@@ -84,11 +92,11 @@ pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
         let list = format!("\n- {ratio};\n- {viewers}.\n\n");
         write_between("host/page/README.md", "page figures", &list)?;
     }
-    for (paths, with) in [(READING, &watched), (SLOW, &slow)] {
+    for (paths, with) in [(READING_VIEWERS, &watched), (SLOW_VIEWERS, &slow)] {
         if with.taken == 0 {
             return Err(Failure::Budget(format!("viewers {paths} took no scene: nothing was measured")));
         }
-        if more(with) > SLACK {
+        if more(with) > COUNT_DIFFERENCE_MAX {
             let (with, alone) = (with.instructions, alone.instructions);
             return Err(Failure::Budget(format!(
                 "with viewers {paths} the match takes {with}, alone {alone}"
@@ -103,10 +111,10 @@ const SECONDS: u32 = 4;
 /// Ticks of brains and hosts in each.
 const TICKS_A_SECOND: u32 = 100;
 /// Permitted difference of two runs: sleeping, and times at which the clock is read.
-const SLACK: f64 = 0.005;
+const COUNT_DIFFERENCE_MAX: f64 = 0.005;
 /// Five viewers, in the notation of the example of the same name.
-const READING: &str = "rrrrr";
-const SLOW: &str = "sdsdv";
+const READING_VIEWERS: &str = "rrrrr";
+const SLOW_VIEWERS: &str = "sdsdv";
 
 /// Counts of a match with viewers.
 struct Counted {
@@ -120,8 +128,7 @@ struct Counted {
 fn count(program: &Path, paths: &str) -> Result<Counted, Failure> {
     let directory = program.with_file_name(format!("page-{paths}"));
     let _ = fs::remove_dir_all(&directory);
-    fs::create_dir_all(&directory)
-        .map_err(|error| Failure::Start { line: directory.display().to_string(), error })?;
+    fs::create_dir_all(&directory).map_err(|error| Failure::at(&directory, error))?;
     let line = format!("valgrind {} play", program.display());
     let failed = |error| Failure::Start { line: line.clone(), error };
     let mut child = Command::new("valgrind")
@@ -172,16 +179,14 @@ fn silent() -> std::io::Error {
 
 /// Finds a browser, installed first where that is possible.
 fn ensure_browser() -> Result<(), Failure> {
-    let there = |name: &str| {
-        let mut question = Command::new(name);
-        question.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        question.status().is_ok_and(|status| status.success())
-    };
-    let found = || env::var_os("ONETWO_BROWSER").is_some() || NAMES.iter().any(|name| there(name));
-    if found() {
+    if has_browser() {
         return Ok(());
     }
     // The next check shows whether it helped.
     let _ = run(Command::new("apt-get").args(["install", "-y", "chromium"]));
-    if found() { Ok(()) } else { Err(Failure::Browser) }
+    if has_browser() { Ok(()) } else { Err(Failure::Browser) }
+}
+
+fn has_browser() -> bool {
+    env::var_os("ONETWO_BROWSER").is_some() || NAMES.iter().any(|name| answers(&mut Command::new(name)))
 }

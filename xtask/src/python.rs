@@ -89,13 +89,16 @@ impl Environment {
 
 /// A Python that can make environments, installed first where that is possible.
 fn ensure_python() -> Result<&'static str, Failure> {
-    let found = || NAMES.into_iter().find(|name| is_fit(Path::new(name)));
-    if let Some(name) = found() {
+    if let Some(name) = fit_python() {
         return Ok(name);
     }
     // The next check shows whether it helped.
     let _ = run(Command::new("apt-get").args(["install", "-y", "python3", "python3-venv"]));
-    found().ok_or(Failure::Python)
+    fit_python().ok_or(Failure::Python)
+}
+
+fn fit_python() -> Option<&'static str> {
+    NAMES.into_iter().find(|name| is_fit(Path::new(name)))
 }
 
 fn is_fit(python: &Path) -> bool {

@@ -13,18 +13,14 @@ pub(crate) const WHAT: &str =
 /// Runs every `cargo run` of the pages' shell blocks; the xtask commands beside them are this program. What
 /// they write is cleared first: results that another commit has left are refused.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
-    let at = |file: &Path| {
-        let line = file.display().to_string();
-        move |error| Failure::Start { line, error }
-    };
     let texts = PAGES.map(|page| {
         let file = context.root().join(page);
-        fs::read_to_string(&file).map_err(at(&file))
+        fs::read_to_string(&file).map_err(|error| Failure::at(&file, error))
     });
     let texts: Vec<String> = texts.into_iter().collect::<Result<_, _>>()?;
     for result in texts.iter().flat_map(|text| commands(text)).filter_map(result) {
         let place = context.root().join(result);
-        clear(&place).map_err(at(&place))?;
+        clear(&place).map_err(|error| Failure::at(&place, error))?;
     }
     texts.iter().flat_map(|text| commands(text)).try_for_each(|command| run(&mut context.cargo(command)))
 }

@@ -92,7 +92,7 @@ fn fresh(directory: &Path) -> Result<(), Failure> {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => fs::create_dir_all(directory),
     };
-    emptied.map_err(|error| failed(directory, error))
+    emptied.map_err(|error| Failure::at(directory, error))
 }
 
 /// Copies a file into a directory.
@@ -101,11 +101,7 @@ fn put(file: &Path, directory: &Path) -> Result<(), Failure> {
     fs::create_dir_all(directory)
         .and_then(|()| fs::copy(file, directory.join(name)))
         .map(drop)
-        .map_err(|error| failed(file, error))
-}
-
-fn failed(path: &Path, error: io::Error) -> Failure {
-    Failure::Start { line: path.display().to_string(), error }
+        .map_err(|error| Failure::at(file, error))
 }
 
 /// Static programs, which run on any Linux.

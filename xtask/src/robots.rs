@@ -22,9 +22,8 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
         let real = boards().iter().filter(|board| board.firmware.is_some()).map(Program::Board);
         for program in real.chain([Program::Free, Program::Robot(ImageBody::Omni)]) {
             let path = build_for_robot(context.root(), program, name, name).map_err(Failure::Image)?;
-            let unreadable = |why: String| Failure::Firmware(vec![format!("{}: {why}", path.display())]);
-            let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
-            let image = Image::parse(&bytes).map_err(|error| unreadable(error.to_string()))?;
+            let bytes = fs::read(&path).map_err(|error| Failure::unreadable(&path, &error))?;
+            let image = Image::parse(&bytes).map_err(|error| Failure::unreadable(&path, &error))?;
             let sizes = Sizes::of(&image);
             println!("xtask: {name}: {}: {} B flash, {} B RAM", program.name(), sizes.flash, sizes.ram);
             if let Err(over) = program.budget().check(&sizes) {
@@ -38,5 +37,4 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
 
 /// The image for a robot against native brains for the same: skills alone, and six in a match; and the
 /// robot against its simulation.
-const COMPARED: &str = "test --release --package match-tests --features match-tests/qemu --test qemu_wheels \
-                        --test qemu_match --test robot_spec";
+const COMPARED: &str = "test --release --test qemu_wheels --test qemu_match --test robot_spec";

@@ -1,9 +1,10 @@
 //! `tasks`: table of xtask commands. One row per command: its name, its arguments, its effect, and its
 //! function.
 
-use crate::context::{Context, Failure};
+use crate::context::{Context, Failure, run};
 use crate::{
-    bench, budgets, cost, emulate, evaluation, example_cost, game_cost, page, pictures, release, trial_cost,
+    bench, budgets, cost, docs, emulate, evaluation, example_cost, game_cost, page, pictures, release,
+    trial_cost,
 };
 
 /// An xtask command other than `test`.
@@ -24,12 +25,7 @@ pub(crate) struct Task {
 impl Task {
     /// The command named by these arguments, and its remaining arguments.
     pub(crate) fn asked(arguments: &[String]) -> Result<(&'static Self, Vec<String>), String> {
-        let named = |task: &&Self| {
-            let name = task.name.split(' ');
-            let count = name.clone().count();
-            arguments.len() >= count && name.zip(arguments).all(|(name, label)| name == label)
-        };
-        let Some(task) = TASKS.iter().find(named) else {
+        let Some(task) = TASKS.iter().find(|task| task.is_named_by(arguments)) else {
             let first = arguments.first().map_or("", String::as_str);
             let names: Vec<_> = TASKS.iter().filter_map(|task| task.name.strip_prefix("bench ")).collect();
             return Err(match first {
@@ -45,6 +41,12 @@ impl Task {
         }
     }
 
+    /// Whether the arguments begin with its name.
+    fn is_named_by(&self, arguments: &[String]) -> bool {
+        let name = self.name.split(' ');
+        arguments.len() >= name.clone().count() && name.zip(arguments).all(|(name, label)| name == label)
+    }
+
     fn taken(&self) -> &str {
         if self.takes.is_empty() { "none" } else { self.takes }
     }
@@ -52,11 +54,12 @@ impl Task {
 
 /// The usage of all commands.
 pub(crate) fn usage() -> String {
-    let line = |task: &Task| {
+    let mut text = String::new();
+    for task in &TASKS {
         let head = format!("{} {}", task.name, task.takes);
-        format!("  {}\n                 {}\n", head.trim_end(), task.what)
-    };
-    TASKS.iter().map(line).collect()
+        text += &format!("  {}\n                 {}\n", head.trim_end(), task.what);
+    }
+    text
 }
 
 /// Whether `--write` is among the arguments.
@@ -83,7 +86,29 @@ const fn handed_on(
     Task { name, takes, what, run, free: true }
 }
 
-static TASKS: [Task; 20] = [
+static TASKS: [Task; 23] = [
+    task(
+        "soak",
+        "",
+        "run the tests with what depends on how fast or busy this machine is, which `test` leaves out: how long HALT and\n\
+        \x20                alarms take, and frames of the page",
+        |context, _| page::soak(context),
+    ),
+    handed_on(
+        "docs",
+        "[--only NAME]... [--list]",
+        "make all figures of the documentation again, or those named, and note their commit in the pages; two hours in all",
+        docs::make,
+    ),
+    task(
+        "lines",
+        "",
+        "record each crate's product lines: a test holds it to them, and a tenth",
+        |context, _| {
+            let line = "test --package match-tests --test tidy -- size::no_crate";
+            run(context.cargo(line).env("ONETWO_RECORD_LINES", "1"))
+        },
+    ),
     handed_on(
         "release",
         "[TARGET]...",
@@ -206,11 +231,10 @@ static TASKS: [Task; 20] = [
         "[--write]",
         "likewise of a second of eleven against eleven on wheels; --write puts the table into hil-sim/README.md",
         |context, arguments| {
-            let rows = example_cost::SIMULATOR.rows(context)?;
             if writes(arguments) {
-                cost::write_between("hil-sim/README.md", "simulator table", &cost::table(&rows))?;
+                return example_cost::write_simulator(context);
             }
-            cost::judge(&rows)
+            cost::judge(&example_cost::SIMULATOR.rows(context)?)
         },
     ),
 ];

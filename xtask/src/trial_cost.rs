@@ -16,10 +16,11 @@ pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     let mut rows = Vec::new();
     for opponents in ["dg", "2d"] {
         for approach in ["cbr", "reactive"] {
-            let count = |trials| played(&program, &directory, opponents, approach, trials);
-            let (once, twice) = (count(TRIALS)?, count(2 * TRIALS)?);
+            let [once, twice] =
+                [TRIALS, 2 * TRIALS].map(|trials| played(&program, &directory, opponents, approach, trials));
+            let (once, twice) = (once?, twice?);
             let cost = (twice.instructions - once.instructions) / (twice.seconds - once.seconds);
-            rows.push(Row::new(format!("{approach} against {opponents}"), cost, Some(BUDGET)));
+            rows.push(Row::new(format!("{approach} against {opponents}"), cost, Some(TRIAL_SECOND_MAX)));
         }
     }
     Ok(rows)
@@ -47,10 +48,10 @@ fn played(
     let out = directory.display().to_string();
     let (instructions, _) = counted(program, line.split_whitespace().chain([out.as_str()]))?;
     let file = directory.join("trials.csv");
-    let wrong = |error| Failure::Start { line: file.display().to_string(), error };
-    let rows = fs::read_to_string(&file).map_err(wrong)?;
-    let none = || wrong(io::Error::new(io::ErrorKind::InvalidData, "no column of seconds"));
-    Ok(Played { instructions, seconds: seconds(&rows).ok_or_else(none)? })
+    let rows = fs::read_to_string(&file).map_err(|error| Failure::at(&file, error))?;
+    let no_column = io::Error::new(io::ErrorKind::InvalidData, "no column of seconds");
+    let seconds = seconds(&rows).ok_or_else(|| Failure::at(&file, no_column))?;
+    Ok(Played { instructions, seconds })
 }
 
 /// The sum of a table's seconds.
@@ -60,8 +61,8 @@ fn seconds(rows: &str) -> Option<f64> {
     lines.map(|line| line.split(',').nth(column)?.parse::<f64>().ok()).sum()
 }
 
-/// docs/architecture.md §9, instructions a simulated second.
-const BUDGET: f64 = 3e6;
+/// Budget of docs/architecture.md §9, instructions a simulated second.
+const TRIAL_SECOND_MAX: f64 = 3e6;
 /// Number of trials in the shorter run, twice as many in the longer: minutes of simulated time.
 const TRIALS: u32 = 10;
 

@@ -93,13 +93,13 @@ fn over_a_socket_it_is_received_by_its_host_and_its_simulator_and_ends_when_aske
     };
     let end = AtomicBool::new(false);
     std::thread::scope(|scope| {
+        let began = Clock::now();
         let robot = scope.spawn(|| run(&options, base(), &end));
         let mut link = HostLink::new(TeamId::of(Colour::Blue), KEY, 1);
         let mut bytes = [0; 1024];
         let (len, from) = host.recv_from(&mut bytes).unwrap();
         assert!(matches!(link.open(Instant(0), &bytes[..len]), Ok(Opened::Unauthenticated(..))));
         assert_eq!(link.welcome(id()).map(|welcome| welcome.boot_epoch), Some(77));
-        let began = Clock::now();
         for _ in 0..20 {
             let (len, sender) = simulator.recv_from(&mut bytes).unwrap();
             assert_eq!(sender, from, "one socket");
@@ -109,7 +109,7 @@ fn over_a_socket_it_is_received_by_its_host_and_its_simulator_and_ends_when_aske
             let answer = RobotControlResponse { feedback, ..Default::default() };
             simulator.send_to(&answer.encode_to_vec(), sender).unwrap();
         }
-        // Twenty ticks are 190 ms; a busy machine may need longer, never much less.
+        // The twentieth tick is due 190 ms after the robot's start, and never comes much earlier.
         assert!(began.elapsed() > Duration::from_millis(120), "{:?}", began.elapsed());
         end.store(true, Ordering::Relaxed);
         assert_eq!(robot.join().unwrap().unwrap(), ProcessEnd::Asked);

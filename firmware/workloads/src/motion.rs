@@ -13,6 +13,7 @@ use motion::intercept::{InterceptRequest, Interception, kick_reach};
 use motion::trajectory::{CalcMotion, DragLimits, FreeLimits, Motion, State};
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
+use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
 /// Functions that are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,7 +110,7 @@ impl MotionTask {
             velocity: self.velocity,
             ball: &self.ball,
             target: Point::new(4.5, 0.0),
-            reach: kick_reach(0.09, 0.0215),
+            reach: kick_reach(ROBOT_RADIUS, BALL_RADIUS),
             until: 5.0,
         };
         match asked.find(&FreeLimits::default(), request) {

@@ -1,6 +1,7 @@
 //! `halt_cli`: HALT against floods, second referees and slow lines, with the built `onetwo control` on
-//! loopback and a pseudo terminal. Measured values are printed; limits are generous, because test machines
-//! are loaded. Times: s and ms.
+//! loopback and a pseudo terminal. What is held is the same on any machine: bytes and frames that come
+//! before HALT. How long HALT takes is printed, and held to [`HALT_MAX`] by `cargo xtask soak` alone.
+//! Times: s and ms.
 #![cfg(target_os = "linux")]
 
 use std::io::{BufRead, BufReader};
@@ -27,8 +28,11 @@ use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, WrapperPacket};
 
 /// Generous: a loaded machine is no failure.
 const PATIENCE: Duration = Duration::from_mins(1);
-/// Longest latency of HALT on a loaded machine; 1.2 to 9.3 s before queues were bounded.
+/// Longest median latency of HALT under a flood in the soak; 1.2 to 9.3 s before queues were bounded.
 const HALT_MAX: Duration = Duration::from_millis(500);
+/// Frames of the host to its robots that may come between the referee's HALT and the first HALT on the radio,
+/// in the median: a tenth of a second of them.
+const STALE_FRAMES_MAX: usize = 80;
 /// Resident memory may grow by at most this under a flood, bytes; 465 MB before.
 const GROWTH_MAX: u64 = 24 << 20;
 /// A gigabit network, bytes a second.
@@ -283,14 +287,22 @@ fn station() -> (SocketAddr, Receiver<(Instant, bool)>) {
     (address, frames)
 }
 
+/// How long a frame was waited for, and the number of other frames that came meanwhile.
+struct Waited {
+    latency: Duration,
+    stale_frames: usize,
+}
+
 /// Waits for a frame that is a HALT, or one that is not, sent after `since`.
-fn wait_for(frames: &Receiver<(Instant, bool)>, halt: bool, since: Instant) -> Duration {
-    let until = Instant::now() + PATIENCE;
+fn wait_for(frames: &Receiver<(Instant, bool)>, halt: bool, since: Instant) -> Waited {
+    let (until, mut stale_frames) = (Instant::now() + PATIENCE, 0);
     loop {
         let left = until.saturating_duration_since(Instant::now());
         match frames.recv_timeout(left) {
-            Ok((at, wait_for_line)) if wait_for_line == halt && at >= since => return at - since,
-            Ok(_) => {}
+            Ok((at, is_halt)) if is_halt == halt && at >= since => {
+                return Waited { latency: at - since, stale_frames };
+            }
+            Ok((at, _)) => stale_frames += usize::from(at >= since),
             Err(error) => panic!("no frame with halt = {halt} comes: {error}"),
         }
     }
@@ -319,53 +331,63 @@ fn flood(to: SocketAddr, datagrams: Vec<Vec<u8>>, end: &Arc<AtomicBool>) -> Arc<
 
 /// HALT under a flood of those datagrams on vision's port: median and worst of several HALTs, and the growth
 /// of memory.
-fn halts_under(flooded: Vec<Vec<u8>>, alarm: &str) {
-    let (robots, frames) = station();
-    let mut field = Field::start(&format!("udp://{robots}"), &[]);
+fn halts_under(field: &mut Field, frames: &Receiver<(Instant, bool)>, flooded: Vec<Vec<u8>>) {
     let end = Arc::new(AtomicBool::new(false));
     camera(field.vision, &end);
     let controller = Controller::start("gc", "127.0.0.1:0", field.referee, Wire::Stop);
     field.wait_for_line(&["the referee is received"]);
     controller.send_command(Wire::ForceStart);
-    wait_for(&frames, false, Instant::now());
+    wait_for(frames, false, Instant::now());
     let before = field.memory();
     let sent = flood(field.vision, flooded, &end);
     thread::sleep(Duration::from_secs(2));
-    let (mut took, mut most) = (Vec::new(), before);
+    let (mut took, mut stale, mut most) = (Vec::new(), Vec::new(), before);
     for _ in 0..8 {
         let since = controller.send_command(Wire::Halt);
-        took.push(wait_for(&frames, true, since));
+        let Waited { latency, stale_frames } = wait_for(frames, true, since);
+        took.push(latency);
+        stale.push(stale_frames);
         thread::sleep(Duration::from_millis(100));
         controller.send_command(Wire::Stop);
-        wait_for(&frames, false, Instant::now());
+        wait_for(frames, false, Instant::now());
         most = most.max(field.memory());
     }
-    field.wait_for_line(&[alarm]);
     end.store(true, Ordering::Relaxed);
     took.sort();
+    stale.sort_unstable();
     let (median, worst) = (took[took.len() / 2], took[took.len() - 1]);
     eprintln!(
-        "HALT to the first HALT on the radio under {} datagrams: median {median:.1?}, worst {worst:.1?}; memory {} kB before, {} kB most",
+        "HALT to the first HALT on the radio under {} datagrams: median {median:.1?}, worst {worst:.1?}, frames before it \
+         {stale:?}; memory {} kB before, {} kB most",
         sent.load(Ordering::Relaxed),
         before / 1024,
         most / 1024
     );
-    assert!(median <= HALT_MAX, "{took:?}");
+    assert!(stale[stale.len() / 2] <= STALE_FRAMES_MAX, "{stale:?}");
     assert!(most <= before + GROWTH_MAX, "{before} bytes before, {most} under the flood");
+    if std::env::var_os("ONETWO_SOAK").is_some() {
+        assert!(median <= HALT_MAX, "{took:?}");
+    }
 }
 
 #[test]
 fn finding_3_halt_does_not_wait_behind_a_flood_of_camera_frames() {
     let frames: Vec<_> = (0..64).map(|number| camera_frame(number + 1_000_000, 300)).collect();
     assert!((8_000..10_240).contains(&frames[0].len()), "{} bytes", frames[0].len());
-    halts_under(frames, "vision packets came faster");
+    // Whether frames are dropped depends on the machine; that drops are counted and told, the tests of inbox
+    // and alarms show.
+    let (robots, received) = station();
+    halts_under(&mut Field::start(&format!("udp://{robots}"), &[]), &received, frames);
 }
 
 #[test]
 fn finding_3_datagrams_longer_than_vision_sends_are_refused() {
     let frames = vec![camera_frame(1_000_000, 2_000)];
     assert!(frames[0].len() > 50_000, "{} bytes", frames[0].len());
-    halts_under(frames, "longer than vision sends");
+    let (robots, received) = station();
+    let mut field = Field::start(&format!("udp://{robots}"), &[]);
+    halts_under(&mut field, &received, frames);
+    field.wait_for_line(&["longer than vision sends"]);
 }
 
 #[test]

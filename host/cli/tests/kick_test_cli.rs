@@ -53,7 +53,7 @@ fn a_kick_test_on_robots_over_the_network_fits_the_gain_and_takes_it() {
     control.wait_for("robots are received");
 
     ask(&control, r#"{"ask":"kicks","team":"blue","robot":1,"kicks":5}"#);
-    controller.wait_for(|packet| packet.command = Command::ForceStart as i32);
+    controller.send(|packet| packet.command = Command::ForceStart as i32);
 
     // A person brings the ball back where the robot may not fetch it.
     let begun = Instant::now();

@@ -7,8 +7,8 @@
 //! well the match is played depends on the machine, equality does not: an emulator that gets too little of
 //! the processor loses ticks of its clock, so that the length is counted in the robots' own steps.
 //!
-//! `ONETWO_MATCH_SECONDS=60 cargo test --release -p onetwo --features qemu --test qemu_udp -- --nocapture`
-//! plays longer. Needs QEMU and a compiler for the target (feature `qemu`).
+//! `ONETWO_MATCH_SECONDS=60 cargo test --release -p onetwo --test qemu_udp -- --nocapture`
+//! plays longer. Needs QEMU and a compiler for the target.
 
 mod running;
 

@@ -5,8 +5,7 @@
 mod running;
 
 use std::net::{SocketAddr, TcpListener, UdpSocket};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use running::controller::Controller;
 use running::simulator::teleport;
@@ -21,6 +20,9 @@ use ssl::referee::{Command, Point};
 use ssl::simulation::TeleportBall;
 use ssl::vision::{DetectionFrame, WrapperPacket};
 
+/// Camera frames of two cameras at 75 Hz, in which a simulator takes what was sent before.
+const FRAMES_UNTIL_SEEN: usize = 40;
+
 /// The first image for which `holds`; earlier ones are passed over.
 fn image(socket: &UdpSocket, what: &str, holds: impl Fn(&DetectionFrame) -> bool) {
     let (until, mut bytes, mut last) = (Instant::now() + PATIENCE, [0; 8192], None);
@@ -34,6 +36,20 @@ fn image(socket: &UdpSocket, what: &str, holds: impl Fn(&DetectionFrame) -> bool
         last = Some(detection);
     }
     panic!("{what}: {last:?}");
+}
+
+/// Stops the game and lets it run; returns once the simulator has played on with it, some camera frames
+/// later.
+fn start(controller: &Controller, vision: &UdpSocket) {
+    controller.send(|packet| packet.command = Command::Stop as i32);
+    controller.send(|packet| packet.command = Command::ForceStart as i32);
+    let mut bytes = [0; 8192];
+    vision.set_nonblocking(true).expect("a socket");
+    while vision.recv_from(&mut bytes).is_ok() {}
+    vision.set_nonblocking(false).expect("a socket");
+    for _ in 0..FRAMES_UNTIL_SEEN {
+        vision.recv_from(&mut bytes).expect("vision comes");
+    }
 }
 
 fn ball_at(frame: &DetectionFrame, x: f32, y: f32) -> bool {
@@ -52,7 +68,7 @@ fn the_assistant_puts_the_ball_takes_a_robot_off_and_brings_it_back() {
     simulator.wait_for("a game controller is received at");
     teleport(control, TeleportBall { x: Some(1.0), y: Some(-1.0), ..TeleportBall::default() });
     image(&vision, "the ball is moved", |frame| ball_at(frame, 1_000.0, -1_000.0));
-    controller.wait_for(|packet| {
+    controller.send(|packet| {
         packet.command = Command::Stop as i32;
         packet.next_command = Some(Command::PrepareKickoffYellow as i32);
         packet.designated_position = Some(Point { x: 0.0, y: 0.0 });
@@ -61,11 +77,11 @@ fn the_assistant_puts_the_ball_takes_a_robot_off_and_brings_it_back() {
     assert!(line.contains("(0.00, 0.00) m: for yellow's kick-off"), "{line}");
     image(&vision, "the ball is in the middle", |frame| ball_at(frame, 0.0, 0.0));
     // A yellow card: no robot leaves by itself, and after 10 s one is taken off.
-    controller.wait_for(|packet| packet.blue.max_allowed_bots = Some(5));
+    controller.send(|packet| packet.blue.max_allowed_bots = Some(5));
     let (_, line) = simulator.wait_for("assistant  takes blue");
     assert!(line.contains("too many robots for 10 s"), "{line}");
     image(&vision, "five are left", |frame| frame.robots_blue.len() == 5);
-    controller.wait_for(|packet| packet.blue.max_allowed_bots = Some(6));
+    controller.send(|packet| packet.blue.max_allowed_bots = Some(6));
     let (_, line) = simulator.wait_for("assistant  puts blue");
     assert!(line.contains("may have another robot"), "{line}");
     image(&vision, "six again", |frame| frame.robots_blue.len() == 6);
@@ -91,10 +107,7 @@ fn the_automatic_referee_registers_and_reports_what_it_sees() {
     assert_eq!(registration.expect("a registration").identifier, "onetwo");
     talk.send(&reply).expect("accepted");
     simulator.wait_for("a game controller is received at");
-    controller.wait_for(|packet| packet.command = Command::Stop as i32);
-    thread::sleep(Duration::from_millis(300));
-    controller.wait_for(|packet| packet.command = Command::ForceStart as i32);
-    thread::sleep(Duration::from_millis(300));
+    start(&controller, &vision);
     for (x, y, vx, vy, kind) in [
         (0.0, 2.5, 0.0, 4.0, GameEventType::BallLeftFieldTouchLine),
         (4.0, 0.0, 4.0, 0.0, GameEventType::PossibleGoal),
@@ -107,10 +120,7 @@ fn the_automatic_referee_registers_and_reports_what_it_sees() {
         assert_eq!((event.created_timestamp, event.id), (None, None), "both are the controller's to give");
         talk.send(&reply).expect("accepted");
         // The controller stops the game, and it goes on.
-        controller.wait_for(|packet| packet.command = Command::Stop as i32);
-        thread::sleep(Duration::from_millis(300));
-        controller.wait_for(|packet| packet.command = Command::ForceStart as i32);
-        thread::sleep(Duration::from_millis(300));
+        start(&controller, &vision);
     }
 }
 

@@ -57,9 +57,8 @@ fn robots_of_a_killed_strategy_stand_within_a_tenth_of_a_second_and_it_comes_bac
     let mut control = Running::start(&[&control[..], &more[..], &["--duration", "20"]].concat());
     let controller = Controller::new(&referee);
     control.wait_for("robots are received");
-    controller.wait_for(|packet| packet.command = Wire::Stop as i32);
-    thread::sleep(Duration::from_millis(500));
-    controller.wait_for(|packet| packet.command = Wire::ForceStart as i32);
+    controller.send(|packet| packet.command = Wire::Stop as i32);
+    controller.send(|packet| packet.command = Wire::ForceStart as i32);
     thread::sleep(Duration::from_secs(4));
     let process = std::fs::read_to_string(&number).expect("the strategy was started");
     let killed = Command::new("kill").args(["-9", process.trim()]).status().expect("kill");

@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(alarms.drops(Instant(0), dropped(0)).len(), 0);
         alarms.drops(Instant(100_000), dropped(5));
         let now = alarms.drops(Instant(200_000), dropped(12));
-        assert!(now[0].text.contains("12 vision packets"), "{now:?}");
+        assert!(now[0].text.contains("12 vision packets came faster than they can be used"), "{now:?}");
         assert!(alarms.drops(Instant(200_000) + SHOWN_FOR, dropped(12)).is_empty());
     }
 }

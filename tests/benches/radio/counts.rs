@@ -42,11 +42,15 @@ fn numbers(line: &str) -> Option<[u32; 3]> {
     numbers.try_into().ok()
 }
 
+/// Budgets of docs/architecture.md §9, guest instructions for a frame to 32 B, and to 64 B.
+const SHORT_FRAME_MAX: u32 = 1_300;
+const LONG_FRAME_MAX: u32 = 2_400;
+
 /// Maximum guest instructions for a frame of `bytes` bytes.
 fn limit(bytes: u32) -> Option<u32> {
     match bytes {
-        0..=32 => Some(1_300),
-        33..=64 => Some(2_400),
+        0..=32 => Some(SHORT_FRAME_MAX),
+        33..=64 => Some(LONG_FRAME_MAX),
         // Worlds arrive at a robot a few hundred times a second; docs/architecture.md §9 names no budget for
         // them.
         _ => None,

@@ -82,21 +82,21 @@ fn pictures(program: &str, directory: &Path) -> Reported<()> {
     let displayed = LayerState::start(program, &["play", "--seed", SEED, "--speed", "20"])?;
     let mut browser = Browser::start()?;
     let mut tab = browser.open(&displayed.url("?theme=dark&tab=why"), 1440, 900)?;
-    tab.wait(&format!("window.onetwo?.store.latest?.t > {PLAYED_S}"), 240)?;
+    tab.wait(&format!("window.onetwo?.store.latest?.t > {PLAYED_S}"))?;
     tab.eval("fetch('/api/state')")?;
     // A moment in which a case is executed and robots move: the middle of the first such play.
-    tab.wait("onetwo.store.matchEvents.some((h) => h.kind === 'case')", 60)?;
+    tab.wait("onetwo.store.matchEvents.some((h) => h.kind === 'case')")?;
     let at = tab.eval(BUSY)?.as_f64().unwrap_or(30.0);
     let here = |tab: &mut Tab<'_>, at: f64| -> Reported<()> {
         tab.eval(&format!("location.hash = '#t={at:.2}'"))?;
-        tab.wait(&format!("Math.abs(onetwo.store.scene.t - {at}) < 0.25"), 30)?;
+        tab.wait(&format!("Math.abs(onetwo.store.scene.t - {at}) < 0.25"))?;
         thread::sleep(std::time::Duration::from_millis(400));
         Ok(())
     };
     here(&mut tab, at)?;
     take(&mut tab, &directory.join("field.png"))?;
     tab.click("#layers-open")?;
-    tab.wait("document.querySelector('[data-layer=truth]')", 10)?;
+    tab.wait("document.querySelector('[data-layer=truth]')")?;
     // The list lies over the left half: the page is turned so that play is on the right.
     if tab.eval("onetwo.store.scene.ball.at[0] < 0")?.as_bool() == Some(true) {
         tab.key("f")?;
@@ -108,7 +108,7 @@ fn pictures(program: &str, directory: &Path) -> Reported<()> {
     tab.eval(
         "(document.querySelector('[data-retrieval]') ?? document.querySelector('[data-explain]')).click()",
     )?;
-    tab.wait("document.querySelectorAll('#decided tbody tr').length > 0", 20)?;
+    tab.wait("document.querySelectorAll('#decided tbody tr').length > 0")?;
     take(&mut tab, &directory.join("why.png"))?;
     tab.click("#dialog button")?;
     for (key, name) in [("2", "match.png"), ("3", "health.png"), ("4", "control.png")] {
@@ -121,10 +121,10 @@ fn pictures(program: &str, directory: &Path) -> Reported<()> {
     take(&mut tab, &directory.join("cases.png"))?;
     here(&mut tab, at)?;
     tab.key("6")?;
-    tab.wait("document.querySelectorAll('#bench-case option').length > 0", 20)?;
+    tab.wait("document.querySelectorAll('#bench-case option').length > 0")?;
     // The team of the play at that moment.
     tab.eval("document.querySelector(`[data-draft=${onetwo.store.scene.cycles.find((c) => c.state === 'playing')?.team ?? 'blue'}]`).click()")?;
-    tab.wait("onetwo.workbench.sheet?.copies.length === 4", 20)?;
+    tab.wait("onetwo.workbench.sheet?.copies.length === 4")?;
     take(&mut tab, &directory.join("workbench.png"))?;
     tab.key("1")?;
     tab.key("t")?;
@@ -159,7 +159,7 @@ fn frames(program: &str) -> Reported<()> {
         LayerState::start(program, &["play", "--seed", SEED, "--league", "division-a", "--speed", "20"])?;
     let mut browser = Browser::start()?;
     let mut tab = browser.open(&displayed.url(""), 1440, 900)?;
-    tab.wait(BUSY_FRAME, 300)?;
+    tab.wait(BUSY_FRAME)?;
     tab.eval(&format!("({FILL})()"))?;
     let reported = tab.eval("onetwo.bench(onetwo.full)")?;
     let number = |key: &str| reported[key].as_f64().unwrap_or_default();

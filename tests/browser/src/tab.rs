@@ -8,6 +8,9 @@ use serde_json::{Value, json};
 
 use crate::browser::{Browser, BrowserError};
 
+/// A condition that does not come within this time never comes: a busy machine is no failure.
+const GIVES_UP_AFTER: Duration = Duration::from_mins(5);
+
 /// A page in the browser.
 pub struct Tab<'b> {
     browser: &'b mut Browser,
@@ -58,8 +61,8 @@ impl<'b> Tab<'b> {
         }
     }
 
-    /// Waits until a piece of script is true.
-    pub fn wait(&mut self, script: &str, seconds: u64) -> Result<(), BrowserError> {
+    /// Waits until a piece of script is true: however busy the machine is, it must become so.
+    pub fn wait(&mut self, script: &str) -> Result<(), BrowserError> {
         let begun = Instant::now();
         loop {
             // A page that is not loaded yet throws: that counts as false.
@@ -67,9 +70,10 @@ impl<'b> Tab<'b> {
             if matches!(last, Ok(Value::Bool(true))) {
                 return Ok(());
             }
-            if begun.elapsed() > Duration::from_secs(seconds) {
+            if begun.elapsed() > GIVES_UP_AFTER {
                 return Err(BrowserError::Answer(format!(
-                    "`{script}` is not so after {seconds} s: {last:?}"
+                    "`{script}` is not so after {} s: {last:?}",
+                    GIVES_UP_AFTER.as_secs()
                 )));
             }
             std::thread::sleep(Duration::from_millis(100));

@@ -214,7 +214,7 @@ mod tests {
             "cargo xtask …",
             "cargo xtask bench …",
             "cargo test -p match-tests --test tidy",
-            "cargo test --release -p match-tests --features qemu --test qemu_*",
+            "cargo test --release -p match-tests --test qemu_*",
             "cargo run --release -p onetwo-host --example track -- --x",
             "cargo fuzz run frame",
             "play --bad",

@@ -3,7 +3,25 @@
 
 use std::collections::BTreeSet;
 
-use match_tests::workspace::{Source, rust_sources};
+use firmware_build::inspect::STEP_BUDGET;
+use match_tests::workspace::{Source, members, root, rust_sources};
+
+#[test]
+fn every_guarded_place_exists() {
+    let places = FACTS.iter().flat_map(|fact| {
+        let folders = match fact.guarded {
+            Guarded::Folders(folders) => folders,
+            Guarded::Linking(_) => &[],
+        };
+        folders.iter().chain([&fact.home]).chain(fact.other.iter().map(|(path, _)| path))
+    });
+    let gone: BTreeSet<_> = places.filter(|place| !root().join(place).exists()).collect();
+    assert!(gone.is_empty(), "not there any more, so that nothing guards them: {gone:?}; mend FACTS");
+    let folders = CODE_OF_ROBOTS.folders();
+    for wanted in ["firmware/brain/src", "hil-sim/src", "host/src", "host/cli/src", "host/arena/src"] {
+        assert!(folders.iter().any(|folder| folder == wanted), "{wanted} is not among {folders:?}");
+    }
+}
 
 #[test]
 fn a_fact_has_one_place() {
@@ -14,7 +32,8 @@ fn a_fact_has_one_place() {
 
 #[test]
 fn a_retyped_number_is_found_and_so_is_an_exception_that_nothing_needs() {
-    let fact = |patterns, other| Fact { name: "x", patterns, folders: &["a"], home: "a/home.rs", other };
+    let guarded = Guarded::Folders(&["a"]);
+    let fact = |patterns, other| Fact { name: "x", patterns, guarded, home: "a/home.rs", other };
     let code = |text: &str| vec![Source { path: "a/b.rs".into(), text: text.into() }];
     let home = || Source { path: "a/home.rs".into(), text: "const X: f32 = 0.09;\n".into() };
     let found = |fact: &Fact, text: &str| {
@@ -43,12 +62,13 @@ fn a_retyped_number_is_found_and_so_is_an_exception_that_nothing_needs() {
 
 /// Where a fact is written as a number outside its home, and exceptions that nothing needs any more.
 fn retyped(fact: &Fact, sources: &[Source]) -> Vec<String> {
-    let Fact { name, patterns, folders, home, other } = fact;
+    let Fact { name, patterns, guarded, home, other } = fact;
+    let folders = guarded.folders();
     let mut findings = Vec::new();
     let mut needed = BTreeSet::new();
     let of_tests = |path: &str| path.ends_with("tests.rs") || path.contains("/tests/");
     let within = |path: &str| {
-        folders.iter().any(|directory| path == *directory || path.starts_with(&format!("{directory}/")))
+        folders.iter().any(|directory| path == directory || path.starts_with(&format!("{directory}/")))
     };
     for source in sources.iter().filter(|source| within(&source.path) && !of_tests(&source.path)) {
         let mut in_text = false;
@@ -112,7 +132,7 @@ fn writes(code: &str, pattern: &str) -> bool {
     }
     let value =
         |text: &str| text.replace('_', "").trim_end_matches("f32").trim_end_matches("f64").parse().ok();
-    let wanted: Option<f64> = value(pattern);
+    let wanted: Option<f64> = if pattern == OF_STEP { Some(f64::from(STEP_BUDGET)) } else { value(pattern) };
     code.split(|c| !is_part(c)).any(|token| wanted.is_some() && value(token) == wanted)
 }
 
@@ -121,38 +141,56 @@ struct Fact {
     name: &'static str,
     /// Its number; or `NAME #`, a constant or `field: #`, a field that no number may be given to.
     patterns: &'static [&'static str],
-    /// Where the number means this fact.
-    folders: &'static [&'static str],
+    guarded: Guarded,
     home: &'static str,
     /// Lines where the same number is another fact.
     other: &'static [(&'static str, &'static str)],
 }
 
+/// Pattern that stands for the value of [`STEP_BUDGET`].
+const OF_STEP: &str = "STEP_BUDGET";
+
+/// Where a number means a fact.
+#[derive(Clone, Copy)]
+enum Guarded {
+    /// In these folders and files.
+    Folders(&'static [&'static str]),
+    /// In each crate that links this one, and in that one itself; but for crates of tests, which write
+    /// numbers down so that they can disagree.
+    Linking(&'static str),
+}
+
+impl Guarded {
+    fn folders(self) -> Vec<String> {
+        match self {
+            Self::Folders(folders) => folders.iter().map(|folder| (*folder).to_owned()).collect(),
+            Self::Linking(name) => members()
+                .into_iter()
+                .filter(|member| member.name == name || member.linked.contains(name))
+                .filter(|member| !OF_TESTS.contains(&member.name.as_str()))
+                .map(|member| format!("{}/src", member.directory))
+                .collect(),
+        }
+    }
+}
+
+/// Crates of tests.
+const OF_TESTS: [&str; 3] = ["match-tests", "page-browser", "on-target"];
 /// Its numbers are no code: `tests/tests/robot_spec.rs` holds them to what is built.
 const ROBOT: &str = "robots/ours.toml";
-const CODE_OF_ROBOTS: &[&str] = &[
-    "firmware/brain/src",
-    "firmware/motion/src",
-    "firmware/runtime/src",
-    "protocol/rules/src",
-    "host/src",
-    "host/cli/src",
-    "host/feed/src",
-    "hil-sim/robot/src",
-];
-/// Tests write numbers down, so that they can disagree.
+const CODE_OF_ROBOTS: Guarded = Guarded::Linking("rules");
 const FACTS: [Fact; 10] = [
     Fact {
         name: "the ball's radius",
         patterns: &["0.0215"],
-        folders: CODE_OF_ROBOTS,
+        guarded: CODE_OF_ROBOTS,
         home: "protocol/rules/src/limits.rs",
         other: &[],
     },
     Fact {
         name: "a robot's radius",
         patterns: &["0.09"],
-        folders: CODE_OF_ROBOTS,
+        guarded: CODE_OF_ROBOTS,
         home: "protocol/rules/src/limits.rs",
         other: &[
             // Half a body is misread for sure.
@@ -166,14 +204,14 @@ const FACTS: [Fact; 10] = [
     Fact {
         name: "a robot's front or wheels",
         patterns: &["0.073", "0.0945", "0.081"],
-        folders: CODE_OF_ROBOTS,
+        guarded: CODE_OF_ROBOTS,
         home: ROBOT,
         other: &[],
     },
     Fact {
         name: "a limit of motion",
         patterns: &["acceleration: #", "braking: #", "ACCELERATION #", "BRAK #"],
-        folders: CODE_OF_ROBOTS,
+        guarded: CODE_OF_ROBOTS,
         home: ROBOT,
         other: &[
             // The legged robot's, of the first paper's simulator.
@@ -182,6 +220,10 @@ const FACTS: [Fact; 10] = [
             ("firmware/brain/src/skills/wheels/get_ball.rs", "CLOSING_BRAKE"),
             // m, not m/s².
             ("firmware/motion/src/avoid/item.rs", "BRAKE_SKIN"),
+            // The lowest limit that a message may name.
+            ("protocol/src/host.rs", "ACCELERATION_MIN"),
+            // A share of a world's acceleration.
+            ("hil-sim/src/small_size/worlds/model.rs", "kick_gain"),
             // What both of two robots that close are trusted with.
             ("firmware/brain/src/body/omni/drivetrain.rs", "BOTH_BRAKE"),
             // How gently a carried ball is brought to its place.
@@ -191,7 +233,11 @@ const FACTS: [Fact; 10] = [
     Fact {
         name: "the governor's speed, turn or brake",
         patterns: &["SPEED_MAX #", "TURN_MAX #", "speed: #", "turn: #", "brake: #"],
-        folders: &["firmware/brain/src/governor.rs", "firmware/runtime/src/wheel.rs", "protocol/rules/src"],
+        guarded: Guarded::Folders(&[
+            "firmware/brain/src/governor.rs",
+            "firmware/runtime/src/wheel.rs",
+            "protocol/rules/src",
+        ]),
         home: ROBOT,
         other: &[],
     },
@@ -208,7 +254,12 @@ const FACTS: [Fact; 10] = [
             "_pulses: #",
             "proportional: #",
         ],
-        folders: &["firmware/brain/src", "firmware/runtime/src", "protocol/rules/src", "host/src/strategy"],
+        guarded: Guarded::Folders(&[
+            "firmware/brain/src",
+            "firmware/runtime/src",
+            "protocol/rules/src",
+            "host/src/strategy",
+        ]),
         home: ROBOT,
         other: &[],
     },
@@ -228,11 +279,16 @@ const FACTS: [Fact; 10] = [
             "CENTERS #",
             "TOUCH #",
         ],
-        folders: CODE_OF_ROBOTS,
+        guarded: CODE_OF_ROBOTS,
         home: "protocol/rules/src/contact.rs",
         other: &[
             // The legged robot's path to a ball.
             ("firmware/brain/src/skills/legged/get_ball.rs", "STAND_OFF"),
+            // Tolerance of physics, and steps between two contacts.
+            ("hil-sim/src/small_size/contact.rs", "const TOUCH"),
+            ("hil-sim/src/small_size/mod.rs", "TOUCH_GAP_STEPS"),
+            // A statistic.
+            ("host/learning/src/paired.rs", "TOUCHES_Z"),
             // Start and end of a path.
             ("firmware/motion/src/avoid/item.rs", "TOUCH"),
             // A speed of bodies, and an angle beside an opponent.
@@ -251,28 +307,21 @@ const FACTS: [Fact; 10] = [
     Fact {
         name: "how long a robot counts as present",
         patterns: &["PRESENCE_LEASE #", "BEACON_LEASE #"],
-        folders: &["protocol/src", "firmware/brain/src", "host/src"],
+        guarded: Guarded::Folders(&["protocol/src", "firmware/brain/src", "host/src"]),
         home: "protocol/src/team.rs",
         other: &[],
     },
     Fact {
         name: "a port",
         patterns: &["10300", "10301", "10302", "10020", "10006", "10003", "10010", "10005", "20011"],
-        folders: &[
-            "protocol/ssl/src",
-            "host/src",
-            "host/cli/src",
-            "hil-sim/src",
-            "hil-sim/robot/src",
-            "hil-sim/arena/src",
-        ],
+        guarded: Guarded::Linking("ssl"),
         home: "protocol/ssl/src/net/mod.rs",
         other: &[],
     },
     Fact {
         name: "the step's budget",
-        patterns: &["40_000"],
-        folders: &["firmware/build/src", "host/cli/src", "xtask/src"],
+        patterns: &[OF_STEP],
+        guarded: Guarded::Folders(&["firmware/build/src", "host/cli/src", "xtask/src"]),
         home: "firmware/build/src/inspect/budget.rs",
         other: &[],
     },

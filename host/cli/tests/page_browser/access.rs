@@ -31,7 +31,7 @@ fn play() -> Program {
 
 fn show(tab: &mut Tab<'_>, name: &str) {
     tab.eval(&format!("document.querySelector('[data-tab={name}]').click()")).unwrap();
-    tab.wait(&format!("!document.getElementById('tab-{name}').hidden"), 5).unwrap();
+    tab.wait(&format!("!document.getElementById('tab-{name}').hidden")).unwrap();
     // Panels follow ten times a second, lists from the program once.
     std::thread::sleep(Duration::from_millis(1500));
 }
@@ -41,12 +41,12 @@ fn the_tab_key_reaches_everything_that_can_be_pressed_or_set() {
     let mut browser = Browser::start().unwrap();
     let program = play();
     let mut tab = browser.open(&program.url("?theme=dark"), 1400, 900).unwrap();
-    tab.wait("window.onetwo?.store.scene?.robots.length === 12 && onetwo.store.scene.t > 8", 60).unwrap();
+    tab.wait("window.onetwo?.store.scene?.robots.length === 12 && onetwo.store.scene.t > 8").unwrap();
     // What changes while it is counted cannot be compared.
     tab.eval("document.querySelector('[data-tab=control]').click()").unwrap();
-    tab.wait("document.getElementById('pause')", 10).unwrap();
+    tab.wait("document.getElementById('pause')").unwrap();
     tab.click("#pause").unwrap();
-    tab.wait("onetwo.store.latest.paused", 10).unwrap();
+    tab.wait("onetwo.store.latest.paused").unwrap();
     for name in TABS {
         show(&mut tab, name);
         let wanted = tab.eval(WANTED).unwrap().as_u64().unwrap();
@@ -71,13 +71,13 @@ fn axe_core_finds_nothing_in_both_themes_and_on_a_narrow_screen() {
     let mut browser = Browser::start().unwrap();
     let program = play();
     let mut tab = browser.open(&program.url("?theme=dark"), 1400, 900).unwrap();
-    tab.wait("window.onetwo?.store.scene?.robots.length === 12 && onetwo.store.scene.t > 8", 60).unwrap();
+    tab.wait("window.onetwo?.store.scene?.robots.length === 12 && onetwo.store.scene.t > 8").unwrap();
     tab.eval(&format!("(() => {{ {axe}; return typeof axe; }})()")).unwrap();
     // A case on the workbench, so that its parts are there.
     tab.eval("document.querySelector('[data-tab=bench]').click()").unwrap();
-    tab.wait("document.querySelector('#bench-case option')", 20).unwrap();
+    tab.wait("document.querySelector('#bench-case option')").unwrap();
     tab.click("#bench-open-case").unwrap();
-    tab.wait("onetwo.workbench.sheet?.text.includes('intent')", 20).unwrap();
+    tab.wait("onetwo.workbench.sheet?.text.includes('intent')").unwrap();
     let run = "axe.run(document, { resultTypes: ['violations'] }).then((found) => found.violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html.slice(0, 160)).join(' | ')}`).join('\\n'))";
     // A picture without words is found: it looks at what is there.
     tab.eval("document.body.append(Object.assign(new Image(), { id: 'wordless' }))").unwrap();

@@ -97,21 +97,21 @@ fn a_moment_becomes_a_case_by_hand_and_keys_that_the_next_match_plays() {
     ]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?theme=dark"), 1400, 900).unwrap();
-    tab.wait("window.onetwo?.store.scene?.robots.length === 12", 60).unwrap();
+    tab.wait("window.onetwo?.store.scene?.robots.length === 12").unwrap();
 
     // A decision that two robots at least were there for: the same seed comes to it again.
-    tab.wait("onetwo.store.matchEvents.some((e) => e.problem)", 90).unwrap();
+    tab.wait("onetwo.store.matchEvents.some((e) => e.problem)").unwrap();
     let found = (0..120).any(|_| {
         std::thread::sleep(Duration::from_secs(1));
         tab.eval(MOMENT).unwrap().as_bool() == Some(true)
     });
     assert!(found, "no decision had two robots");
     tab.key("6").unwrap();
-    tab.wait("document.querySelector('[data-draft=blue]')", 20).unwrap();
-    tab.wait("!onetwo.time.live && Math.abs(onetwo.time.at - window.moment.t) < 0.01", 20).unwrap();
+    tab.wait("document.querySelector('[data-draft=blue]')").unwrap();
+    tab.wait("!onetwo.time.live && Math.abs(onetwo.time.at - window.moment.t) < 0.01").unwrap();
     let team = tab.eval("window.moment.team").unwrap().as_str().unwrap().to_owned();
     tab.click(&format!("[data-draft={team}]")).unwrap();
-    tab.wait("onetwo.workbench.sheet?.copies.length === 4", 20).unwrap();
+    tab.wait("onetwo.workbench.sheet?.copies.length === 4").unwrap();
     let drafted = text(&mut tab);
     saved_as_file(&mut tab, &team, &drafted);
 
@@ -119,13 +119,13 @@ fn a_moment_becomes_a_case_by_hand_and_keys_that_the_next_match_plays() {
     let robot = pixel(&mut tab, &format!("{COPY}.robots[1].at"));
     tab.eval(COUNTED).unwrap();
     tab.drag(robot, [robot[0] + 40.0, robot[1] - 30.0]).unwrap();
-    tab.wait("onetwo.workbench.past.length === 1", 10).unwrap();
+    tab.wait("onetwo.workbench.past.length === 1").unwrap();
     // Eight moves: the canvas is measured where the hand takes hold, and the case is kept where it lets go.
     assert_eq!(tab.eval("[measured, kept]").unwrap(), serde_json::json!([1, 1]));
     let edge =
         pixel(&mut tab, &format!("{COPY}.ball.at.map((mm, i) => mm + (i ? 0 : {COPY}.ball.scope[0]))"));
     tab.drag(edge, [edge[0] + 15.0, edge[1]]).unwrap();
-    tab.wait("onetwo.workbench.past.length === 2", 10).unwrap();
+    tab.wait("onetwo.workbench.past.length === 2").unwrap();
     let dragged = text(&mut tab);
     assert_ne!(dragged, drafted);
     assert_eq!(dragged.lines().count(), drafted.lines().count());
@@ -141,12 +141,12 @@ fn a_moment_becomes_a_case_by_hand_and_keys_that_the_next_match_plays() {
     for _ in 0..3 {
         tab.key("ArrowRight").unwrap();
     }
-    tab.wait("onetwo.workbench.past.length === 5", 10).unwrap();
+    tab.wait("onetwo.workbench.past.length === 5").unwrap();
     assert_eq!(number(&mut tab, &format!("{COPY}.robots[0].at[0]")), before + 30.0 * right);
     tab.click("#bench-undo").unwrap();
-    tab.wait("onetwo.workbench.past.length === 4", 10).unwrap();
+    tab.wait("onetwo.workbench.past.length === 4").unwrap();
     tab.click("#bench-undo").unwrap();
-    tab.wait("onetwo.workbench.past.length === 3 && onetwo.workbench.future.length === 2", 10).unwrap();
+    tab.wait("onetwo.workbench.past.length === 3 && onetwo.workbench.future.length === 2").unwrap();
     assert_eq!(number(&mut tab, &format!("{COPY}.robots[0].at[0]")), before + 10.0 * right);
 
     // A gameplay: the second robot goes somewhere; a symmetric copy shows it mirrored.
@@ -155,17 +155,17 @@ fn a_moment_becomes_a_case_by_hand_and_keys_that_the_next_match_plays() {
     for letter in ["g", "o", "Enter"] {
         tab.key(letter).unwrap();
     }
-    tab.wait("onetwo.workbench.sheet.robots[1].actions.some((a) => a.go_to_point)", 10).unwrap();
+    tab.wait("onetwo.workbench.sheet.robots[1].actions.some((a) => a.go_to_point)").unwrap();
     // The first opponent must be there for the case to be played: so it is in this moment.
     tab.click("[data-presence=opp1]").unwrap();
     for letter in ["m", "u", "Enter"] {
         tab.key(letter).unwrap();
     }
-    tab.wait(&format!("{COPY}.opponents[0].presence === 'required'"), 10).unwrap();
+    tab.wait(&format!("{COPY}.opponents[0].presence === 'required'")).unwrap();
     tab.click("[data-copy=both]").unwrap();
     let mirrored =
         format!("{COPY}.ball.at.every((mm, i) => mm === -onetwo.workbench.sheet.copies[0].ball.at[i])");
-    tab.wait(&mirrored, 5).unwrap();
+    tab.wait(&mirrored).unwrap();
     tab.click("[data-copy=identity]").unwrap();
 
     name_and_describe(&mut tab);
@@ -175,9 +175,9 @@ fn a_moment_becomes_a_case_by_hand_and_keys_that_the_next_match_plays() {
     within_budget(&mut tab);
 
     // Saved: the file is the text on the workbench.
-    tab.wait("!document.getElementById('bench-save').disabled", 5).unwrap();
+    tab.wait("!document.getElementById('bench-save').disabled").unwrap();
     tab.click("#bench-save").unwrap();
-    tab.wait("onetwo.workbench.opened === onetwo.workbench.sheet.text", 20).unwrap();
+    tab.wait("onetwo.workbench.opened === onetwo.workbench.sheet.text").unwrap();
     let saved = fs::read_to_string(library.join("center/from-the-page.toml")).unwrap();
     assert_eq!(saved, text(&mut tab));
     let (sound, found) = onetwo(&["cases", "check", "--json"], &library);
@@ -188,12 +188,12 @@ fn a_moment_becomes_a_case_by_hand_and_keys_that_the_next_match_plays() {
 
     // The next match retrieves it.
     tab.click("[data-tab=control]").unwrap();
-    tab.wait("document.getElementById('restart')", 10).unwrap();
+    tab.wait("document.getElementById('restart')").unwrap();
     tab.click("#live").unwrap();
-    tab.wait("onetwo.time.live", 10).unwrap();
+    tab.wait("onetwo.time.live").unwrap();
     tab.click("#restart").unwrap();
-    tab.wait("onetwo.store.latest.t < 5", 20).unwrap();
-    tab.wait("onetwo.store.matchEvents.some((e) => e.words.includes('center/from-the-page'))", 120).unwrap();
+    tab.wait("onetwo.store.latest.t < 5").unwrap();
+    tab.wait("onetwo.store.matchEvents.some((e) => e.words.includes('center/from-the-page'))").unwrap();
     no_errors(&mut tab);
     let _ = fs::remove_dir_all(library.parent().unwrap());
 }
@@ -208,15 +208,15 @@ fn saved_as_file(tab: &mut Tab<'_>, team: &str, drafted: &str) {
         tab.key("ArrowDown").unwrap();
     }
     tab.key("Enter").unwrap();
-    tab.wait("window.file", 10).unwrap();
+    tab.wait("window.file").unwrap();
     assert_eq!(tab.eval("window.file").unwrap(), drafted);
 }
 
 fn name_and_describe(tab: &mut Tab<'_>) {
     tab.write("#bench-name", "center/from-the-page").unwrap();
-    tab.wait("onetwo.workbench.name === 'center/from-the-page'", 10).unwrap();
+    tab.wait("onetwo.workbench.name === 'center/from-the-page'").unwrap();
     tab.write("#bench-intent", "Written on the page.").unwrap();
-    tab.wait("onetwo.workbench.sheet.intent === 'Written on the page.'", 10).unwrap();
+    tab.wait("onetwo.workbench.sheet.intent === 'Written on the page.'").unwrap();
 }
 
 /// Its rank at the moment, what it wins over the match, and what other settings would change.
@@ -224,23 +224,26 @@ fn judged(tab: &mut Tab<'_>, team: &str) {
     tab.click(&format!("[data-rank={team}]")).unwrap();
     tab.wait(
         "document.getElementById('bench-rank')?.textContent.startsWith('Retrieved: it is the first of')",
-        20,
     )
     .unwrap();
     tab.click("#bench-count").unwrap();
-    tab.wait("/^It would be retrieved at [1-9][0-9]* of /.test(document.querySelector('#bench-counted p')?.textContent)", 20).unwrap();
+    tab.wait("/^It would be retrieved at [1-9][0-9]* of /.test(document.querySelector('#bench-counted p')?.textContent)").unwrap();
     // To its least, 100 mm.
     tab.click("[data-setting=thr_c]").unwrap();
     tab.key("Home").unwrap();
-    tab.wait("document.querySelector('[data-setting=thr_c]').value === '100'", 10).unwrap();
-    tab.wait("/ answers change/.test(document.getElementById('bench-similar').textContent)", 20).unwrap();
+    tab.wait("document.querySelector('[data-setting=thr_c]').value === '100'").unwrap();
+    tab.wait("/ answers change/.test(document.getElementById('bench-similar').textContent)").unwrap();
 }
 
 /// What the script takes for a frame with the workbench open; drags, keys, rehearsal and film are among them.
+/// Times are held in the soak alone: they are this machine's.
 fn within_budget(tab: &mut Tab<'_>) {
     let share = number(tab, "onetwo.spent.filter((ms) => ms <= 8).length / onetwo.spent.length");
     let median = number(tab, "[...onetwo.spent].sort((a, b) => a - b)[onetwo.spent.length >> 1]");
     println!("{:.1} % of frames within 8 ms, median {median:.1} ms", share * 100.0);
+    if std::env::var_os("ONETWO_SOAK").is_none() {
+        return;
+    }
     // 0.8 ms on an idle machine of two cores; beside two builds 1.3 ms, and 6 % of frames wait for a core.
     assert!(median < 3.0, "the median is {median} ms");
     assert!(share > 0.9, "{share} of frames are within 8 ms, the median is {median} ms");
@@ -249,17 +252,17 @@ fn within_budget(tab: &mut Tab<'_>) {
 /// Fifty attempts, and one of them is watched.
 fn rehearsed(tab: &mut Tab<'_>) {
     tab.click("[data-rehearse=playing]").unwrap();
-    tab.wait("document.getElementById('bench-results')?.dataset.over === 'true'", 300).unwrap();
-    tab.wait("document.querySelector('#bench-results p').textContent.startsWith('50 of 50 attempts')", 5)
+    tab.wait("document.getElementById('bench-results')?.dataset.over === 'true'").unwrap();
+    tab.wait("document.querySelector('#bench-results p').textContent.startsWith('50 of 50 attempts')")
         .unwrap();
     assert_eq!(number(tab, "document.querySelectorAll('[data-sample]').length"), 3.0);
     tab.click("[data-sample]").unwrap();
-    tab.wait("document.querySelector('.story')", 10).unwrap();
+    tab.wait("document.querySelector('.story')").unwrap();
     let before = number(tab, "onetwo.frames()");
-    std::thread::sleep(Duration::from_secs(1));
-    assert!(number(tab, "onetwo.frames()") > before + 10.0, "the attempt moves");
+    // The attempt moves.
+    tab.wait(&format!("onetwo.frames() > {before} + 10")).unwrap();
     tab.click("[data-sample]").unwrap();
-    tab.wait("!document.querySelector('.story')", 10).unwrap();
+    tab.wait("!document.querySelector('.story')").unwrap();
 }
 
 /// What the page shows of the file is what the library has of it, in all four symmetries.

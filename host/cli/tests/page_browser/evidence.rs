@@ -40,32 +40,32 @@ fn evidence_of_a_case_is_shown_and_a_proposal_is_taken_and_undone() {
     ]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?theme=dark"), 1400, 900).unwrap();
-    tab.wait("window.onetwo?.store.scene?.robots.length === 12", 60).unwrap();
+    tab.wait("window.onetwo?.store.scene?.robots.length === 12").unwrap();
     tab.key("6").unwrap();
-    tab.wait("document.querySelector('#bench-case option[value=\"center/one-two\"]')", 20).unwrap();
+    tab.wait("document.querySelector('#bench-case option[value=\"center/one-two\"]')").unwrap();
     tab.eval("document.getElementById('bench-case').value = 'center/one-two'").unwrap();
     tab.click("#bench-open-case").unwrap();
-    tab.wait("onetwo.workbench.sheet?.text.includes('intent')", 20).unwrap();
+    tab.wait("onetwo.workbench.sheet?.text.includes('intent')").unwrap();
     let opened = tab.eval("onetwo.workbench.sheet.text").unwrap();
 
     tab.click("#bench-learned").unwrap();
-    tab.wait("document.getElementById('bench-told')?.textContent.startsWith('40 plays, 32.5 % to goal; 0 of them')", 20)
+    tab.wait("document.getElementById('bench-told')?.textContent.startsWith('40 plays, 32.5 % to goal; 0 of them')")
         .unwrap();
-    tab.wait("document.getElementById('bench-told').textContent.includes('beyond the middle')", 5).unwrap();
-    tab.wait("document.getElementById('bench-proposals').textContent.includes('the risk ring fails')", 5)
+    tab.wait("document.getElementById('bench-told').textContent.includes('beyond the middle')").unwrap();
+    tab.wait("document.getElementById('bench-proposals').textContent.includes('the risk ring fails')")
         .unwrap();
     tab.click("[data-take]").unwrap();
-    tab.wait("onetwo.workbench.sheet.text.includes('scope = [330, 220]')", 20).unwrap();
-    tab.wait("document.querySelector('[data-take]').disabled", 20).unwrap();
+    tab.wait("onetwo.workbench.sheet.text.includes('scope = [330, 220]')").unwrap();
+    tab.wait("document.querySelector('[data-take]').disabled").unwrap();
     tab.click("#bench-undo").unwrap();
-    tab.wait("!onetwo.workbench.sheet.text.includes('scope = [330, 220]')", 20).unwrap();
+    tab.wait("!onetwo.workbench.sheet.text.includes('scope = [330, 220]')").unwrap();
     assert_eq!(tab.eval("onetwo.workbench.sheet.text").unwrap(), opened);
     tab.click("[data-refuse]").unwrap();
-    tab.wait("document.querySelector('[data-refuse]').textContent === 'Propose again'", 20).unwrap();
+    tab.wait("document.querySelector('[data-refuse]').textContent === 'Propose again'").unwrap();
     let refused = fs::read_to_string(beside.join("refused.jsonl")).unwrap();
     assert_eq!(refused, format!("{{\"case\":\"{CASE}\",\"change\":{{\"ball-scope\":[330,220]}}}}\n"));
     tab.click("[data-refuse]").unwrap();
-    tab.wait("document.querySelector('[data-refuse]').textContent === 'Refuse'", 20).unwrap();
+    tab.wait("document.querySelector('[data-refuse]').textContent === 'Refuse'").unwrap();
     assert_eq!(fs::read_to_string(beside.join("refused.jsonl")).unwrap(), "");
     no_errors(&mut tab);
     let _ = fs::remove_dir_all(beside);

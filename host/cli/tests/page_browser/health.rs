@@ -17,52 +17,47 @@ fn plots_have_a_cursor_and_seek_and_the_log_is_searched() {
     let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?theme=dark&tab=health"), 1400, 900).unwrap();
-    tab.wait("onetwo?.store.scene?.t > 6", 90).unwrap();
+    tab.wait("onetwo?.store.scene?.t > 6").unwrap();
     // Windows of a second are told for robots and cameras.
-    tab.wait("onetwo.store.scene.robots.some((r) => r.vitals?.link.frames[0] > 20 && r.vitals.link.trip_ms[1] > 0)", 10).unwrap();
+    tab.wait("onetwo.store.scene.robots.some((r) => r.vitals?.link.frames[0] > 20 && r.vitals.link.trip_ms[1] > 0)").unwrap();
     tab.wait(
         "onetwo.store.scene.cameras.length > 0 && onetwo.store.scene.cameras.every((c) => c.frames[0] > 30)",
-        10,
     )
     .unwrap();
-    tab.wait(
-        "document.querySelectorAll('#cameras tbody tr').length === onetwo.store.scene.cameras.length",
-        5,
-    )
-    .unwrap();
+    tab.wait("document.querySelectorAll('#cameras tbody tr').length === onetwo.store.scene.cameras.length")
+        .unwrap();
     let unknown = "document.getElementById('vitals').textContent.includes('firmware version: not reported')";
-    tab.wait(unknown, 5).unwrap();
+    tab.wait(unknown).unwrap();
 
     // The plot of a robot's speed: the value at the moment, then at a cursor that keys move.
     tab.eval("document.querySelector('[data-plot-robot=yellow0]').click()").unwrap();
     tab.wait(
         "/blue 0 \\d.*m\\/s, yellow 0 \\d.*m\\/s/.test(document.getElementById('plot-values').textContent)",
-        10,
     )
     .unwrap();
     let at = "Number(document.getElementById('plot').getAttribute('aria-valuenow'))";
     let before = number(&mut tab, at);
     key(&mut tab, "#plot", "Home");
     key(&mut tab, "#plot", "ArrowRight");
-    tab.wait(&format!("{at} < {before} - 1"), 5).unwrap();
-    tab.wait("onetwo.time.live", 5).unwrap();
+    tab.wait(&format!("{at} < {before} - 1")).unwrap();
+    tab.wait("onetwo.time.live").unwrap();
     let chosen = number(&mut tab, at);
     key(&mut tab, "#plot", "Enter");
-    tab.wait(&format!("!onetwo.time.live && Math.abs(onetwo.time.at - {chosen}) < 0.2"), 5).unwrap();
+    tab.wait(&format!("!onetwo.time.live && Math.abs(onetwo.time.at - {chosen}) < 0.2")).unwrap();
     // A pointer seeks where it clicks, and the value there is told.
     tab.eval(
         "(() => { const c = document.getElementById('plot'); c.scrollIntoView(); const b = c.getBoundingClientRect();
         c.dispatchEvent(new MouseEvent('click', { clientX: b.left + 46 + (b.width - 54) * 0.1, clientY: b.top + 40, bubbles: true })); })()",
     )
     .unwrap();
-    tab.wait(&format!("!onetwo.time.live && Math.abs(onetwo.time.at - {chosen}) > 0.5"), 5).unwrap();
+    tab.wait(&format!("!onetwo.time.live && Math.abs(onetwo.time.at - {chosen}) > 0.5")).unwrap();
     // A gauge is shown large by its name.
     tab.eval("document.querySelector('[data-large=\"vision/packets a second\"]').click()").unwrap();
-    tab.wait("document.getElementById('plot-name').value === 'vision/packets a second' && document.activeElement.id === 'plot' && document.getElementById('plot-robots').hidden", 5)
+    tab.wait("document.getElementById('plot-name').value === 'vision/packets a second' && document.activeElement.id === 'plot' && document.getElementById('plot-robots').hidden")
         .unwrap();
 
     // The log: what the program printed, searched, and its levels hidden.
-    tab.wait("document.querySelectorAll('#log li').length > 0", 10).unwrap();
+    tab.wait("document.querySelectorAll('#log li').length > 0").unwrap();
     let write = |tab: &mut Tab<'_>, text: &str| {
         tab.eval(&format!(
             "(() => {{ const s = document.getElementById('log-search'); s.value = '{text}'; s.dispatchEvent(new Event('input')); }})()"
@@ -70,12 +65,12 @@ fn plots_have_a_cursor_and_seek_and_the_log_is_searched() {
         .unwrap();
     };
     write(&mut tab, "HTTP://");
-    tab.wait("[...document.querySelectorAll('#log li')].every((li) => li.textContent.includes('http://')) && document.querySelectorAll('#log li').length > 0", 5).unwrap();
+    tab.wait("[...document.querySelectorAll('#log li')].every((li) => li.textContent.includes('http://')) && document.querySelectorAll('#log li').length > 0").unwrap();
     write(&mut tab, "no such words");
-    tab.wait("document.querySelectorAll('#log li').length === 0", 5).unwrap();
+    tab.wait("document.querySelectorAll('#log li').length === 0").unwrap();
     write(&mut tab, "");
-    tab.wait("document.querySelectorAll('#log li.note').length > 0", 5).unwrap();
+    tab.wait("document.querySelectorAll('#log li.note').length > 0").unwrap();
     tab.click("[data-level=note]").unwrap();
-    tab.wait("document.querySelectorAll('#log li.note').length === 0", 5).unwrap();
+    tab.wait("document.querySelectorAll('#log li.note').length === 0").unwrap();
     no_errors(&mut tab);
 }

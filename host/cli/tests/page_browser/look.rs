@@ -43,7 +43,7 @@ fn a_match_that_is_over_says_so_and_offers_what_next() {
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url(""), 1400, 900).unwrap();
     let over = "!document.getElementById('over').hidden && /^Full time [0-9]+ : [0-9]+/.test(document.getElementById('over').textContent)";
-    tab.wait(over, 60).unwrap();
+    tab.wait(over).unwrap();
     // No scene comes any more, and that is no fault: longer than a silent match is waited for.
     std::thread::sleep(Duration::from_secs(4));
     assert!(is(&mut tab, over) && is(&mut tab, "document.getElementById('lost').hidden"));
@@ -51,17 +51,17 @@ fn a_match_that_is_over_says_so_and_offers_what_next() {
     assert!(is(&mut tab, "document.getElementById('phase-now').textContent === 'full time'"));
     // Once more from its beginning.
     tab.click("#again").unwrap();
-    tab.wait("!onetwo.time.live && onetwo.store.scene.t < 3 && document.getElementById('over').hidden", 10)
+    tab.wait("!onetwo.time.live && onetwo.store.scene.t < 3 && document.getElementById('over').hidden")
         .unwrap();
     tab.key("l").unwrap();
-    tab.wait(over, 5).unwrap();
+    tab.wait(over).unwrap();
     // What cannot be done any more is answered.
     tab.key("4").unwrap();
     tab.click("[data-command=HALT]").unwrap();
-    tab.wait("/the match is over/.test(document.getElementById('note').textContent)", 5).unwrap();
+    tab.wait("/the match is over/.test(document.getElementById('note').textContent)").unwrap();
     tab.click("#another").unwrap();
-    tab.wait("onetwo.store.latest.seed === 5 && !onetwo.store.latest.over", 20).unwrap();
-    tab.wait("document.getElementById('over').hidden", 5).unwrap();
+    tab.wait("onetwo.store.latest.seed === 5 && !onetwo.store.latest.over").unwrap();
+    tab.wait("document.getElementById('over').hidden").unwrap();
     no_errors(&mut tab);
 }
 
@@ -70,11 +70,11 @@ fn robots_goals_lists_and_keys_answer_a_hand() {
     let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?theme=dark&tab=health"), 1400, 760).unwrap();
-    tab.wait("window.onetwo?.store.scene?.robots.length === 12 && onetwo.store.scene.t > 3", 60).unwrap();
+    tab.wait("window.onetwo?.store.scene?.robots.length === 12 && onetwo.store.scene.t > 3").unwrap();
     lists(&mut tab);
     tab.key("3").unwrap();
     tab.key(" ").unwrap();
-    tab.wait("onetwo.store.latest.paused", 10).unwrap();
+    tab.wait("onetwo.store.latest.paused").unwrap();
     cards(&mut tab);
     drags(&mut tab);
     space(&mut tab);
@@ -87,13 +87,13 @@ fn robots_goals_lists_and_keys_answer_a_hand() {
 /// Rows that are there stay the same elements while the list grows, in the order of time.
 fn lists(tab: &mut Tab<'_>) {
     tab.key("2").unwrap();
-    tab.wait("document.querySelectorAll('#match-events li').length > 2", 60).unwrap();
+    tab.wait("document.querySelectorAll('#match-events li').length > 2").unwrap();
     tab.eval(
         "window.row = document.querySelector('#match-events li'); window.many = onetwo.store.matchEvents.length",
     )
     .unwrap();
     tab.eval("row.querySelector('button').focus()").unwrap();
-    tab.wait("document.querySelector('#match-events li') !== row", 120).unwrap();
+    tab.wait("document.querySelector('#match-events li') !== row").unwrap();
     assert!(is(tab, "row.isConnected && document.activeElement === row.querySelector('button')"));
     assert!(is(tab, "onetwo.store.matchEvents.length > many"));
     assert!(is(tab, "onetwo.store.matchEvents.every((h, i, all) => i === 0 || all[i - 1].t <= h.t)"));
@@ -104,10 +104,10 @@ fn lists(tab: &mut Tab<'_>) {
     tab.key("[").unwrap();
     let at_command = "!onetwo.time.live && onetwo.store.matchEvents.some((h) => h.kind === 'command' && Math.abs(h.t - onetwo.time.at) < 0.2)";
     tab.key(" ").unwrap();
-    tab.wait(at_command, 5).unwrap();
+    tab.wait(at_command).unwrap();
     tab.eval("others.forEach((button) => button.click())").unwrap();
     tab.key("l").unwrap();
-    tab.wait("onetwo.time.live", 5).unwrap();
+    tab.wait("onetwo.time.live").unwrap();
 }
 
 /// A robot that is clicked on the field shows its card, wherever the panel stood.
@@ -119,7 +119,7 @@ fn cards(tab: &mut Tab<'_>) {
       const [box, at] = [document.getElementById('tab-why'), card].map((e) => e.getBoundingClientRect());
       return card.dataset.robot === `${onetwo.store.chosen.team}${onetwo.store.chosen.id}` && at.height > 0 && at.top >= box.top && at.bottom <= box.bottom;
     })()";
-    tab.wait(seen, 5).unwrap();
+    tab.wait(seen).unwrap();
     assert!(is(
         tab,
         "document.getElementById('tab-why').scrollHeight > document.getElementById('tab-why').clientHeight"
@@ -133,7 +133,7 @@ fn drags(tab: &mut Tab<'_>) {
     let from = on_screen(tab, &format!("{robot}.at"));
     let to = on_screen(tab, "[1.5, -1.2]");
     tab.drag(from, to).unwrap();
-    tab.wait(&format!("Math.hypot({robot}.at[0] - 1.5, {robot}.at[1] + 1.2) < 0.03"), 2).unwrap();
+    tab.wait(&format!("Math.hypot({robot}.at[0] - 1.5, {robot}.at[1] + 1.2) < 0.03")).unwrap();
     assert!((number(tab, "onetwo.store.latest.t") - before).abs() < 1e-9, "no time has passed");
     // With time the host sees it there itself.
     tab.key("4").unwrap();
@@ -143,9 +143,7 @@ fn drags(tab: &mut Tab<'_>) {
         std::thread::sleep(Duration::from_millis(300));
     }
     tab.wait(
-        "(() => { const r = onetwo.store.latest.robots.find((r) => r.team === 'blue' && r.id === 2); return Math.hypot(r.at[0] - 1.5, r.at[1] + 1.2) < 0.3; })()",
-        10,
-    )
+        "(() => { const r = onetwo.store.latest.robots.find((r) => r.team === 'blue' && r.id === 2); return Math.hypot(r.at[0] - 1.5, r.at[1] + 1.2) < 0.3; })()")
     .unwrap();
 }
 
@@ -154,15 +152,15 @@ fn space(tab: &mut Tab<'_>) {
     tab.click("#flip").unwrap();
     assert!(is(tab, "onetwo.camera.flipped"));
     tab.key(" ").unwrap();
-    tab.wait("!onetwo.store.latest.paused", 10).unwrap();
+    tab.wait("!onetwo.store.latest.paused").unwrap();
     assert!(is(tab, "onetwo.camera.flipped"), "the button is not pressed again");
     tab.eval("document.getElementById('flip').focus()").unwrap();
     tab.key(" ").unwrap();
-    tab.wait("!onetwo.camera.flipped", 5).unwrap();
+    tab.wait("!onetwo.camera.flipped").unwrap();
     assert!(is(tab, "!onetwo.store.latest.paused"));
     tab.eval("document.activeElement.blur()").unwrap();
     tab.key(" ").unwrap();
-    tab.wait("onetwo.store.latest.paused", 10).unwrap();
+    tab.wait("onetwo.store.latest.paused").unwrap();
 }
 
 /// Goals have the colours of who defends them; yellow robots carry a dark square, blue ones do not.
@@ -202,13 +200,13 @@ fn maps(tab: &mut Tab<'_>) {
     tab.eval("['pass-receive', 'pass-value'].forEach((name) => onetwo.setLayer(name, true))").unwrap();
     let shown =
         "onetwo.layers().filter((l) => l.name.startsWith('pass-') && l.shown).map((l) => l.name).join()";
-    tab.wait(&format!("{shown} === 'pass-value' && !document.getElementById('legend').hidden"), 60).unwrap();
+    tab.wait(&format!("{shown} === 'pass-value' && !document.getElementById('legend').hidden")).unwrap();
     tab.eval("onetwo.setLayer('pass-receive', true)").unwrap();
-    tab.wait(&format!("{shown} === 'pass-receive'"), 20).unwrap();
+    tab.wait(&format!("{shown} === 'pass-receive'")).unwrap();
     assert!(is(tab, "/a pass to here arrives/.test(document.getElementById('legend').textContent)"));
     assert!(is(tab, "/^[0-9.]+ %$/.test(document.getElementById('legend-most').textContent)"));
     tab.eval("onetwo.setLayer('pass-receive', false)").unwrap();
-    tab.wait("document.getElementById('legend').hidden", 5).unwrap();
+    tab.wait("document.getElementById('legend').hidden").unwrap();
 }
 
 /// Marks stand out from the field surface by 3 : 1, words from what they stand on by 4.5 : 1, in both themes.
@@ -240,9 +238,9 @@ fn a_narrow_screen_shows_candidates_as_cards() {
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url(""), 390, 844).unwrap();
     tab.resize(390, 844, true).unwrap();
-    tab.wait("window.onetwo?.store.scene?.ball && onetwo.store.scene.t > 5", 60).unwrap();
+    tab.wait("window.onetwo?.store.scene?.ball && onetwo.store.scene.t > 5").unwrap();
     tab.eval("document.querySelector('[data-explain=blue]').click()").unwrap();
-    tab.wait("document.querySelectorAll('#would-be tbody tr').length > 5", 20).unwrap();
+    tab.wait("document.querySelectorAll('#would-be tbody tr').length > 5").unwrap();
     let card = "(() => {
       const cells = [...document.querySelectorAll('#would-be tbody tr')][0].querySelectorAll('td');
       const [name, why] = [cells[1], cells[3]].map((cell) => cell.getBoundingClientRect());
@@ -272,8 +270,8 @@ fn a_host_without_vision_says_so_on_its_page() {
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url(""), 1200, 800).unwrap();
     let said = "!document.getElementById('alarms').hidden && /vision/.test(document.getElementById('alarms').textContent)";
-    tab.wait(said, 20).unwrap();
-    tab.wait("/^[0-9]+ alarms?$/.test(document.getElementById('connection').textContent)", 5).unwrap();
+    tab.wait(said).unwrap();
+    tab.wait("/^[0-9]+ alarms?$/.test(document.getElementById('connection').textContent)").unwrap();
     assert!(
         is(&mut tab, "/--vision/.test(document.getElementById('alarms').textContent)"),
         "with the remedy"

@@ -8,7 +8,7 @@ use crate::program::Program;
 
 fn open<'b>(browser: &'b mut Browser, program: &Program, tab: &str) -> Tab<'b> {
     let mut tab = browser.open(&program.url(&format!("?theme=light&tab={tab}")), 1400, 900).unwrap();
-    tab.wait("window.onetwo?.store.scene?.robots.length === 12", 60).unwrap();
+    tab.wait("window.onetwo?.store.scene?.robots.length === 12").unwrap();
     tab
 }
 
@@ -29,19 +29,17 @@ fn a_kicker_is_tested_on_the_page_and_its_gain_is_taken() {
     ]);
     let mut browser = Browser::start().unwrap();
     let mut tab = open(&mut browser, &program, "tune");
-    tab.wait("document.querySelectorAll('#kicks-blue option').length === 6", 20).unwrap();
+    tab.wait("document.querySelectorAll('#kicks-blue option').length === 6").unwrap();
     // By keys: the last robot is chosen at first.
     tab.eval("document.querySelector('[data-kicks=blue]').focus()").unwrap();
     tab.key("Enter").unwrap();
-    tab.wait("onetwo.store.matchEvents.some((e) => e.words.includes('the kicker of robot 5 is tested'))", 10)
+    tab.wait("onetwo.store.matchEvents.some((e) => e.words.includes('the kicker of robot 5 is tested'))")
         .unwrap();
     // Why its robots do what they do is told as it is.
     tab.wait(
-        "onetwo.store.scene.robots.find((r) => r.team === 'blue' && r.id === 1).mind.why === 'a kicker is tested'",
-        10,
-    )
+        "onetwo.store.scene.robots.find((r) => r.team === 'blue' && r.id === 1).mind.why === 'a kicker is tested'")
     .unwrap();
-    tab.wait("document.querySelector('[data-kicks-state=done]')", 120).unwrap();
+    tab.wait("document.querySelector('[data-kicks-state=done]')").unwrap();
     assert_eq!(
         tab.eval("document.querySelectorAll('[data-kicks-state] tbody tr').length").unwrap().as_f64(),
         Some(10.0)
@@ -52,14 +50,12 @@ fn a_kicker_is_tested_on_the_page_and_its_gain_is_taken() {
     assert!((0.4..0.95).contains(&fitted), "{fitted}: a weak kicker");
     tab.click("[data-kicks-take=blue]").unwrap();
     let taken = format!("document.getElementById('tune-blue-calibration-kick-5')?.value === '{fitted}'");
-    tab.wait(&taken, 10).unwrap();
+    tab.wait(&taken).unwrap();
     tab.wait(
-        "decodeURIComponent(document.querySelector('a[download=\"team-blue.toml\"]').href).includes('robot = 5')",
-        5,
-    )
+        "decodeURIComponent(document.querySelector('a[download=\"team-blue.toml\"]').href).includes('robot = 5')")
     .unwrap();
     tab.click("[data-kicks-end=blue]").unwrap();
-    tab.wait("!document.querySelector('[data-kicks-state]')", 10).unwrap();
+    tab.wait("!document.querySelector('[data-kicks-state]')").unwrap();
     no_errors(&mut tab);
 }
 
@@ -68,21 +64,21 @@ fn a_moment_is_kept_returned_to_and_loaded_from_its_file() {
     let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = open(&mut browser, &program, "control");
-    tab.wait("onetwo.store.scene.robots.some((r) => Math.hypot(...r.velocity) > 0.3)", 60).unwrap();
+    tab.wait("onetwo.store.scene.robots.some((r) => Math.hypot(...r.velocity) > 0.3)").unwrap();
     tab.click("#snapshot-keep").unwrap();
-    tab.wait("document.querySelector('[data-return=\"0\"]')", 10).unwrap();
+    tab.wait("document.querySelector('[data-return=\"0\"]')").unwrap();
     let kept = "fetch('/api/snapshots').then((a) => a.json()).then((all) => { window.kept = all; return all.length; })";
     assert_eq!(tab.eval(kept).unwrap().as_f64(), Some(1.0));
-    tab.wait("onetwo.store.latest.t > kept[0].t + 4", 30).unwrap();
+    tab.wait("onetwo.store.latest.t > kept[0].t + 4").unwrap();
     // Paused, so that it is seen where it was put.
     tab.click("#pause").unwrap();
-    tab.wait("onetwo.store.latest.paused", 10).unwrap();
+    tab.wait("onetwo.store.latest.paused").unwrap();
     tab.click("[data-return=\"0\"]").unwrap();
     tab.eval("onetwo.setLayer('truth', true)").unwrap();
     let back = "(() => { const shapes = onetwo.store.latest.layers.find((l) => l.name === 'truth').shapes; \
         const near = (at) => shapes.some((s) => Math.hypot(s.at[0] - at[0], s.at[1] - at[1]) < 0.002); \
         return kept[0].robots.every((r) => near(r.at)) && near(kept[0].ball.at); })()";
-    tab.wait(back, 10).unwrap();
+    tab.wait(back).unwrap();
     // Its file, changed by hand: the ball lies elsewhere; and one that is none is refused.
     let load = |change: &str| {
         format!(
@@ -92,15 +88,13 @@ fn a_moment_is_kept_returned_to_and_loaded_from_its_file() {
         )
     };
     tab.eval(&load("one.ball.at = [1.5, -1]; one.ball.velocity = [0, 0]")).unwrap();
-    tab.wait("document.querySelector('[data-return=\"1\"]')", 10).unwrap();
+    tab.wait("document.querySelector('[data-return=\"1\"]')").unwrap();
     tab.click("[data-return=\"1\"]").unwrap();
     tab.wait(
-        "(() => { const at = onetwo.store.latest.layers.find((l) => l.name === 'truth').shapes.at(-1).at; return Math.hypot(at[0] - 1.5, at[1] + 1) < 0.01; })()",
-        10,
-    )
+        "(() => { const at = onetwo.store.latest.layers.find((l) => l.name === 'truth').shapes.at(-1).at; return Math.hypot(at[0] - 1.5, at[1] + 1) < 0.01; })()")
     .unwrap();
     tab.eval(&load("one.league = 'ssl-2013'")).unwrap();
-    tab.wait("/the snapshot is of ssl-2013/.test(document.getElementById('note').textContent)", 10).unwrap();
+    tab.wait("/the snapshot is of ssl-2013/.test(document.getElementById('note').textContent)").unwrap();
     no_errors(&mut tab);
 }
 
@@ -109,7 +103,7 @@ fn a_skill_is_tried_beside_the_match_and_counted() {
     let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = open(&mut browser, &program, "control");
-    tab.wait("document.querySelector('#skill-skill option')", 20).unwrap();
+    tab.wait("document.querySelector('#skill-skill option')").unwrap();
     tab.eval(
         "(() => { const set = (id, value) => { const one = document.getElementById(id); one.value = value; one.dispatchEvent(new Event('change')); }; \
          set('skill-skill', 'get-ball'); set('skill-tries', '6'); })()",
@@ -118,9 +112,8 @@ fn a_skill_is_tried_beside_the_match_and_counted() {
     tab.click("#skill-try").unwrap();
     tab.wait(
         "document.querySelector('[data-tries-over=true]')?.textContent.match(/^[0-6] of 6 tries succeeded/)",
-        120,
     )
     .unwrap();
-    tab.wait("document.querySelector('#skill-result tbody td').textContent === 'get-ball'", 5).unwrap();
+    tab.wait("document.querySelector('#skill-result tbody td').textContent === 'get-ball'").unwrap();
     no_errors(&mut tab);
 }

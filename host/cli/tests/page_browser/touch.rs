@@ -19,15 +19,15 @@ fn touch_selects_drags_zooms_and_edits_a_case() {
     let mut tab = browser.open(&program.url(""), 390, 844).unwrap();
     tab.resize(390, 844, true).unwrap();
     tab.emulate_touch().unwrap();
-    tab.wait("window.onetwo?.store.scene?.robots.length === 12", 60).unwrap();
+    tab.wait("window.onetwo?.store.scene?.robots.length === 12").unwrap();
     tab.tap("#play").unwrap();
-    tab.wait("onetwo.store.latest.paused", 10).unwrap();
+    tab.wait("onetwo.store.latest.paused").unwrap();
 
     // A tap chooses a robot; a swipe puts it elsewhere.
     let chosen = "onetwo.store.chosen";
     let at = robot(&mut tab, 2);
     tab.tap_at(at).unwrap();
-    tab.wait(&format!("{chosen} && {chosen}.id === onetwo.store.scene.robots[2].id"), 5).unwrap();
+    tab.wait(&format!("{chosen} && {chosen}.id === onetwo.store.scene.robots[2].id")).unwrap();
     let to = [at[0] + 40.0, at[1] + 60.0];
     let aim = tab.eval(&format!("(() => {{ const b = document.getElementById('field').getBoundingClientRect(); return onetwo.camera.from([{} - b.x, {} - b.y]); }})()", to[0], to[1])).unwrap();
     tab.swipe(&[[at, to]]).unwrap();
@@ -35,7 +35,7 @@ fn touch_selects_drags_zooms_and_edits_a_case() {
         "Math.hypot(...onetwo.store.scene.robots[2].at.map((x, i) => x - [{}, {}][i]))",
         aim[0], aim[1]
     );
-    tab.wait(&format!("{off} < 0.15"), 10).unwrap();
+    tab.wait(&format!("{off} < 0.15")).unwrap();
 
     // A pinch zooms.
     let before = number(&mut tab, "onetwo.camera.scale");
@@ -48,17 +48,17 @@ fn touch_selects_drags_zooms_and_edits_a_case() {
 
     // A case is opened, its robot is put elsewhere, and that is undone.
     tab.tap("[data-tab=bench]").unwrap();
-    tab.wait("document.querySelector('#bench-case option')", 20).unwrap();
+    tab.wait("document.querySelector('#bench-case option')").unwrap();
     tab.tap("#bench-open-case").unwrap();
-    tab.wait("onetwo.workbench.sheet?.copies.length === 4", 20).unwrap();
+    tab.wait("onetwo.workbench.sheet?.copies.length === 4").unwrap();
     tab.eval("document.getElementById('field').scrollIntoView()").unwrap();
     let from = pixel(&mut tab, &format!("{COPY}.robots[0].at"));
     let place = tab.eval(&format!("{COPY}.robots[0].at")).unwrap();
     tab.swipe(&[[from, [from[0] + 30.0, from[1] - 20.0]]]).unwrap();
-    tab.wait("onetwo.workbench.past.length === 1", 10).unwrap();
+    tab.wait("onetwo.workbench.past.length === 1").unwrap();
     assert_ne!(tab.eval(&format!("{COPY}.robots[0].at")).unwrap(), place);
     tab.tap("#bench-undo").unwrap();
-    tab.wait("onetwo.workbench.past.length === 0", 10).unwrap();
+    tab.wait("onetwo.workbench.past.length === 0").unwrap();
     assert_eq!(tab.eval(&format!("{COPY}.robots[0].at")).unwrap(), place);
     no_errors(&mut tab);
 }

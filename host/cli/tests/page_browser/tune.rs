@@ -16,7 +16,7 @@ fn the_list_is_that_of_the_file_and_a_limit_set_on_the_page_slows_the_robots() {
     let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?theme=light&tab=tune"), 1400, 900).unwrap();
-    tab.wait("document.querySelectorAll('#tab-tune input').length > 10", 60).unwrap();
+    tab.wait("document.querySelectorAll('#tab-tune input').length > 10").unwrap();
     let keys = tab
         .eval("[...new Set([...document.querySelectorAll('#tab-tune .param')].map((p) => p.dataset.key.split(' ')[0]))].sort().join()")
         .unwrap();
@@ -44,22 +44,21 @@ fn the_list_is_that_of_the_file_and_a_limit_set_on_the_page_slows_the_robots() {
         )
     };
     tab.eval(&set("tactics", "hope")).unwrap();
-    tab.wait("document.getElementById('note').textContent.includes('no tactic')", 5).unwrap();
+    tab.wait("document.getElementById('note').textContent.includes('no tactic')").unwrap();
     // Blue is slowed down, yellow is not.
     tab.eval(
         "document.querySelector('#tune-blue-limits-speed').focus(); document.querySelector('#tune-blue-limits-speed').value = '0.4'; document.querySelector('#tune-blue-limits-speed').dispatchEvent(new Event('change')); document.querySelector('#tune-blue-limits-speed').blur()",
     )
     .unwrap();
-    tab.wait("document.querySelector('#tune-blue-limits-speed').value === '0.4' && document.querySelector('#tune-blue-limits-speed').closest('.param').classList.contains('differs')", 10).unwrap();
-    tab.wait("onetwo.store.matchEvents.some((e) => e.words.includes('limits.speed is now 0.4'))", 10)
-        .unwrap();
+    tab.wait("document.querySelector('#tune-blue-limits-speed').value === '0.4' && document.querySelector('#tune-blue-limits-speed').closest('.param').classList.contains('differs')").unwrap();
+    tab.wait("onetwo.store.matchEvents.some((e) => e.words.includes('limits.speed is now 0.4'))").unwrap();
     tab.eval("globalThis.fastest = { blue: 0, yellow: 0 }; globalThis.from = onetwo.store.scene.t + 3; setInterval(() => { const s = onetwo.store.scene; if (s.t > from) for (const r of s.robots) fastest[r.team] = Math.max(fastest[r.team], Math.hypot(...r.velocity ?? [0, 0])); }, 50)").unwrap();
-    tab.wait("onetwo.store.scene.t > from + 15", 60).unwrap();
+    tab.wait("onetwo.store.scene.t > from + 15").unwrap();
     let fastest = tab.eval("JSON.stringify(fastest)").unwrap();
     let fastest: serde_json::Value = serde_json::from_str(fastest.as_str().unwrap()).unwrap();
     let of = |team: &str| fastest[team].as_f64().unwrap();
     assert!(of("blue") < 0.8 && of("yellow") > 1.0, "{fastest}");
     // The text to download has the value.
-    tab.wait("decodeURIComponent(document.querySelector('a[download=\"team-blue.toml\"]').href).includes('speed = 0.4')", 5).unwrap();
+    tab.wait("decodeURIComponent(document.querySelector('a[download=\"team-blue.toml\"]').href).includes('speed = 0.4')").unwrap();
     no_errors(&mut tab);
 }

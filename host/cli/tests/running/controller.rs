@@ -1,7 +1,7 @@
 //! `controller`: a scripted game controller for tests: it sends the referee's packet until it is dropped.
 
 use std::net::UdpSocket;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Condvar, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -10,8 +10,32 @@ use ssl::referee::{Command, Referee, Stage, TeamInfo};
 
 /// Sends the packet of the script about a hundred times a second, until it is dropped.
 pub(crate) struct Controller {
-    packet: Arc<Mutex<Option<Referee>>>,
+    script: Arc<Script>,
 }
+
+/// The packet that is sent, and how often it was sent as it is; no packet at the end.
+#[derive(Default)]
+struct Script {
+    packet: Mutex<(Option<Referee>, u32)>,
+    sent: Condvar,
+}
+
+impl Script {
+    /// The packet at this time since the start, counted as sent; none at the end.
+    fn next(&self, time: Duration) -> Option<Vec<u8>> {
+        let mut script = self.packet.lock().expect("the script");
+        let packet = script.0.as_mut()?;
+        packet.packet_timestamp = 1_000_000 + time.as_micros() as u64;
+        let bytes = packet.encode_to_vec();
+        script.1 += 1;
+        self.sent.notify_all();
+        Some(bytes)
+    }
+}
+
+/// A packet was sent as often as this before the next one replaces it: none is lost on the way to a busy
+/// receiver.
+const REPEATS: u32 = 30;
 
 impl Controller {
     pub(crate) fn new(to: &str) -> Self {
@@ -26,31 +50,33 @@ impl Controller {
             source_identifier: Some("scripted".into()),
             ..Referee::default()
         };
-        let packet = Arc::new(Mutex::new(Some(packet)));
-        let (printed, to) = (packet.clone(), to.to_owned());
+        let script = Arc::new(Script { packet: Mutex::new((Some(packet), 0)), ..Script::default() });
+        let (sender, to) = (script.clone(), to.to_owned());
         let (socket, began) = (UdpSocket::bind("127.0.0.1:0").expect("a port"), Instant::now());
         thread::spawn(move || {
-            while let Some(packet) = &mut *printed.lock().expect("the script") {
-                packet.packet_timestamp = 1_000_000 + began.elapsed().as_micros() as u64;
+            while let Some(bytes) = sender.next(began.elapsed()) {
                 // The receiver may not be open yet.
-                let _ = socket.send_to(&packet.encode_to_vec(), &to);
+                let _ = socket.send_to(&bytes, &to);
                 thread::sleep(Duration::from_millis(10));
             }
         });
-        Self { packet }
+        Self { script }
     }
 
-    /// Changes the packet; the next one is a new command.
-    pub(crate) fn wait_for(&self, change: impl FnOnce(&mut Referee)) {
-        let mut packet = self.packet.lock().expect("the script");
-        let packet = packet.as_mut().expect("still running");
+    /// Changes the packet, which is a new command then, and waits until it was sent [`REPEATS`] times.
+    pub(crate) fn send(&self, change: impl FnOnce(&mut Referee)) {
+        let mut script = self.script.packet.lock().expect("the script");
+        let packet = script.0.as_mut().expect("still running");
         change(packet);
         packet.command_counter += 1;
+        script.1 = 0;
+        let _sent =
+            self.script.sent.wait_while(script, |(_, repeats)| *repeats < REPEATS).expect("the script");
     }
 }
 
 impl Drop for Controller {
     fn drop(&mut self) {
-        *self.packet.lock().expect("the script") = None;
+        self.script.packet.lock().expect("the script").0 = None;
     }
 }
