@@ -350,7 +350,7 @@ impl Host {
         }
     }
 
-    /// What goals are worth by score and time left.
+    /// Worths of goals by score and time left.
     fn stakes(&self) -> Stakes {
         let (us, game) = (self.settings.us, self.listener.game());
         let score = |colour| i32::try_from(game.team(colour).score).unwrap_or(i32::MAX);

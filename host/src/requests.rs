@@ -60,8 +60,8 @@ impl Requests {
         }
     }
 
-    /// A surplus robot that cannot leave by itself blocks the game: after [`LEAVING_TIME_MAX`] in a stop our robot
-    /// handler is to take it out.
+    /// A surplus robot that cannot leave by itself blocks the game: after [`LEAVING_TIME_MAX`] in a stop our
+    /// robot handler is to take it out.
     ///
     /// Requested once until there is no surplus robot any more, and only while it is free: where no robot
     /// handler acts, every further request would halt the game again, and after the fifth each is a foul and
@@ -87,8 +87,8 @@ impl Requests {
         }
     }
 
-    /// They have a surplus robot: we continue while that is to our advantage (our penalty, or the ball in
-    /// their half); the controller stops the game for it otherwise.
+    /// Answers an advantage, as the opponents have a surplus robot: we continue while that is to our
+    /// advantage (our penalty, or the ball in their half); the controller stops the game for it otherwise.
     fn advantage(&mut self, view: &View) {
         let theirs = view.theirs.iter().filter(|robot| view.counts_for_them(robot.position)).count();
         let attack = match view.phase {

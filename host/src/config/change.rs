@@ -31,14 +31,14 @@ impl ParameterChange {
         serde_json::from_slice(json).map_err(|broken| error("parameter", broken.to_string()))
     }
 
-    /// As JSON, for a trace.
+    /// JSON of the change, for a trace.
     pub fn to_json(&self) -> String {
         // Strings and numbers: JSON can represent all of it but a number that is none, which reads as no
         // value.
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Its parameter, if it names one and a robot where it must.
+    /// The parameter, if the change names one and a robot where it must.
     fn parameter(&self) -> Result<&'static Parameter, ConfigError> {
         let Some(parameter) = PARAMETERS.iter().find(|parameter| parameter.key == self.key) else {
             return Err(error(

@@ -31,7 +31,7 @@ pub struct StrategyAnswer {
 /// Why an answer is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AnswerError {
-    /// It is not the JSON of an answer.
+    /// A line that is not the JSON of an answer.
     #[error("no answer of the form {{\"orders\":[…]}}: {0}")]
     Json(String),
     /// An order is for a robot that is not among ours.
@@ -46,7 +46,7 @@ pub enum AnswerError {
         "the order of robot {0}: a number is not finite or beyond {COORDINATE_MAX_M} m or {KICK_SPEED_MAX_M_S} m/s"
     )]
     Number(u8),
-    /// There is too much to draw, or in places where it cannot be drawn.
+    /// More to draw than fits, or in places where it cannot be drawn.
     #[error(
         "more than {SHAPES_MAX} shapes or {VALUES_MAX} values, a text of more than {TEXT_MAX} bytes, or a number that \
          is not finite or beyond {COORDINATE_MAX_M} m"

@@ -23,21 +23,21 @@ pub enum StrategyShape {
     },
     /// A circle around a place of the attack frame.
     Circle {
-        /// Its centre.
+        /// Centre of the shape, m.
         at: Pair,
         /// Radius of the circle, m.
         radius: f32,
     },
     /// A short text at a place of the attack frame.
     Text {
-        /// Its centre.
+        /// Centre of the shape, m.
         at: Pair,
         /// At most 40 bytes.
         text: String,
     },
 }
 
-/// What a strategy shows.
+/// Shapes and values that a strategy shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StrategyDrawing {
     /// Shapes, in the order in which they are drawn.

@@ -43,7 +43,7 @@ pub(crate) struct External {
 }
 
 impl External {
-    /// Without a view and an answer.
+    /// A strategy that has neither received a view nor answered.
     pub(crate) fn new(league: League) -> Self {
         Self {
             league,
@@ -96,7 +96,7 @@ impl External {
         self.line.take()
     }
 
-    /// What the newest answer shows on the page.
+    /// Shapes and values of the newest answer, for the page.
     pub(crate) fn drawing(&self) -> &StrategyDrawing {
         &self.drawing
     }

@@ -5,7 +5,7 @@ use ssl::vision::{FieldCircularArc, FieldLineSegment, FieldShapeType, GeometryFi
 
 use super::nearest_division;
 
-/// Where the defence area's size is from.
+/// Source of the defence area's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AreaSource {
     /// From the packet's own numbers.

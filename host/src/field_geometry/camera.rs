@@ -5,13 +5,13 @@ use ssl::vision::GeometryCameraCalibration;
 /// Position of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Its mounting position, m: along x, y, and height, field frame.
+    /// Mounting position, m: along x, y, and height, field frame.
     pub position: [f32; 3],
     /// Source of the position.
     pub source: CameraSource,
 }
 
-/// Where a camera's place is from.
+/// Source of a camera's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraSource {
     /// The packet contains it.

@@ -56,7 +56,7 @@ pub enum Finding {
 }
 
 impl Finding {
-    /// Its identity, without its numbers: findings with the same text are one finding at several times.
+    /// Identity without numbers: findings with the same text are one finding at several times.
     pub fn matter(&self) -> String {
         match self {
             Self::Robots(found) => format!("robots {:?}", found.team),

@@ -9,7 +9,7 @@ use crate::Host;
 /// Input on vision's port without camera frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VisionPort {
-    /// Nothing at all, since the start.
+    /// No packet at all since the start.
     Nothing,
     /// Packets that hold neither camera frame nor field: another program's port.
     Foreign {
@@ -61,7 +61,7 @@ impl Port {
         )
     }
 
-    /// By the newest camera frame, the number of foreign packets, and whether any other packet came.
+    /// Updates by the newest camera frame, the number of foreign packets, and whether any other packet came.
     fn see(
         &mut self,
         now: Instant,

@@ -62,7 +62,7 @@ struct Seen {
     phase: Phase<rules::Colour>,
     /// Our and their keeper, where they are on the field.
     keepers: [Option<(RobotId, Point<Field>)>; 2],
-    /// Where our robots are, and theirs.
+    /// Places of our robots, and of theirs.
     robots: [Vec<Point<Field>>; 2],
 }
 

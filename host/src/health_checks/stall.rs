@@ -35,7 +35,7 @@ pub enum Stall {
 }
 
 impl Stall {
-    /// Its place: `host`, `vision` or `radio`.
+    /// Place of the stall: `host`, `vision` or `radio`.
     pub const fn place(&self) -> &'static str {
         match self {
             Self::Host { .. } => "host",
@@ -81,7 +81,7 @@ impl fmt::Display for Stall {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stalls {
     ran: Option<Instant>,
-    /// How long the computer did not run, and since when it runs again.
+    /// Time for which the computer did not run, and since when it runs again.
     host: Option<(Duration, Instant)>,
     /// Since when snapshots have gone out without a pause.
     sends_since: Option<Instant>,
@@ -98,7 +98,7 @@ struct Last {
     robot: Option<Instant>,
     /// The newest snapshot that went out.
     sent: Option<Instant>,
-    /// Of robots with new telemetry, the shortest time for which one had received nothing.
+    /// Shortest time for which a robot with new telemetry had received nothing.
     unheard: Option<Duration>,
 }
 

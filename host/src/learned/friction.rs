@@ -89,7 +89,8 @@ impl Roll {
         self.squares += s * s;
     }
 
-    /// By least squares, where it rolled for long enough and its deceleration is plausible.
+    /// Deceleration by least squares, m/s², where the ball rolled for long enough and its deceleration is
+    /// plausible.
     fn deceleration(&self) -> Option<f32> {
         if self.newest.since(self.began).0 < ROLL_TIME_MIN.0 || self.times[0] < FRAMES_MIN {
             return None;

@@ -152,7 +152,7 @@ impl Watched {
 const KICKS_KEPT: usize = 15;
 /// Number of kicks needed: of three, two with the same error determine the median.
 const KICKS_MIN: usize = 5;
-/// Of so many kicks a test shows a gain while it goes on.
+/// Number of kicks from which a test shows a gain while it goes on.
 const KICKS_SHOWN_MIN: usize = 3;
 /// A gain is known when its standard error is at most this. Chosen to exclude one estimate that was 20 % off
 /// with an error of 0.047, from kicks that left slower than ordered for a reason that is not known; the

@@ -22,19 +22,19 @@ pub(super) struct Latencies {
 #[derive(Clone, Copy, Debug, Default)]
 struct Robot {
     samples: Samples<STARTS_KEPT>,
-    /// Its stop position, and since when it stands there.
+    /// Stop position, and since when it stands there.
     rests: Option<(Point<Field>, Instant)>,
-    /// Its last order was not to go anywhere.
+    /// Whether its last order was not to go anywhere.
     was_idle: bool,
     start: Option<Start>,
 }
 
-/// It stood still and has been ordered to move.
+/// A robot that stood still and has been ordered to move.
 #[derive(Clone, Copy, Debug)]
 struct Start {
     ordered: Instant,
     from: Point<Field>,
-    /// Its newest place: distance moved, and time, s after the order.
+    /// Newest place: distance moved, and time, s after the order.
     newest: (f32, f32),
     /// When it had moved by [`MOVED_FIRST_M`].
     near: Option<f32>,
@@ -74,7 +74,7 @@ impl Latencies {
 }
 
 impl Robot {
-    /// It was seen there at that time.
+    /// Takes the robot's place at that time.
     fn follow(&mut self, at: Instant, place: Point<Field>) {
         if let Some(mut start) = self.start.take() {
             let (travelled, t) = (start.from.distance(place), signed(start.ordered, at));
@@ -100,7 +100,7 @@ impl Robot {
         };
     }
 
-    /// It is ordered to that place now, or to none.
+    /// Takes the robot's order to a place, or to none.
     fn order(&mut self, now: Instant, at: Instant, place: Point<Field>, to: Option<Point<Field>>) {
         let goes = to.is_some_and(|to| to.distance(place) > ORDER_DISTANCE_MIN_M);
         let Some((from, since)) = self.rests else { return };

@@ -48,7 +48,7 @@ pub enum Warning {
         /// The step, µs; negative: back.
         by: i64,
     },
-    /// Nothing came from the source that is followed, nor from another, for [`HALT_AFTER`] or longer.
+    /// No packet came from the source that is followed, nor from another, for [`HALT_AFTER`] or longer.
     Silent {
         /// The source that was followed.
         source: SourceKey,
@@ -125,7 +125,7 @@ fn pin_for(source: &SourceKey, other: &SourceKey) -> String {
 }
 
 impl Warning {
-    /// Its identity, without its numbers: warnings with the same text are one warning at several times.
+    /// Identity without numbers: warnings with the same text are one warning at several times.
     pub fn matter(&self) -> String {
         match self {
             Self::Disagreement { followed, other, .. } => format!("disagreement {followed} {other}"),

@@ -18,7 +18,7 @@ use crate::learned::{Estimate, Kicks};
 use crate::strategy::{Order, OrderReason, Orders, Role, Task, View};
 use crate::world::World;
 
-/// What the operator asks for, as JSON in a trace and from the page.
+/// Request of the operator, as JSON in a trace and from the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub enum TestOrder {
@@ -41,10 +41,10 @@ pub enum TestRefused {
     /// The line is no order.
     #[error("no test: {0}")]
     Malformed(String),
-    /// There is no robot of this number.
+    /// A number that no robot has.
     #[error("{0} is no robot; ids are 0 to 15")]
     NoSuchRobot(u8),
-    /// So many kicks are not measured.
+    /// A number of kicks that is not measured.
     #[error("{0} kicks: a test measures {KICKS_LEAST} to {KICKS_MOST}")]
     Kicks(u8),
     /// A strategy in another program gives the orders.
@@ -66,14 +66,14 @@ impl TestOrder {
         }
     }
 
-    /// As JSON, for a trace.
+    /// JSON of the order, for a trace.
     pub fn to_json(self) -> String {
         // Numbers and words: JSON can represent all of it.
         serde_json::to_string(&self).unwrap_or_default()
     }
 }
 
-/// How a test of a kicker stands.
+/// State of a kicker's test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TestState {
@@ -93,7 +93,7 @@ pub enum TestState {
     Done,
 }
 
-/// What a test of a kicker has found so far.
+/// Findings of a kicker's test so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KickReport {
     /// Robot whose kicker is tested.
@@ -119,7 +119,7 @@ pub(crate) struct RobotTest {
     tried: usize,
     /// The last kick still rolls.
     rolls: bool,
-    /// Where the ball lay when the target was chosen, and the target.
+    /// Place of the ball when the target was chosen, and the target.
     target: Option<[Point<Attack>; 2]>,
     state: TestState,
 }
@@ -136,7 +136,7 @@ impl RobotTest {
         Some(Self { kicker, fit, kicks, tried: 0, rolls: false, target: None, state })
     }
 
-    /// What it has found; none: all stand.
+    /// Findings so far; none: all stand.
     pub(crate) fn report(&self) -> Option<KickReport> {
         let (robot, wanted) = self.kicker?;
         let (kicks, gain) = (self.kicks.clone(), self.fit.estimate(robot));
@@ -158,7 +158,7 @@ impl RobotTest {
         orders.collect()
     }
 
-    /// What the kicker does, and how the test stands.
+    /// Task of the kicker; updates the test's state.
     fn kick(&mut self, view: &View) -> Option<Task> {
         let (robot, wanted) = self.kicker?;
         self.look(view);

@@ -43,12 +43,12 @@ impl StrategyProcess {
         StrategyStarter::new(command, move || Ok(Box::new(Self::start(&own, ANSWER_WAIT_MAX)?)))
     }
 
-    /// How often it was started.
+    /// Number of starts of the process.
     pub fn starts(&self) -> u32 {
         self.starts
     }
 
-    /// Its process, while it runs.
+    /// Identifier of the process, while it runs.
     pub fn id(&self) -> Option<u32> {
         self.running.as_ref().map(|running| running.child.id())
     }

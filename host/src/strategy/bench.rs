@@ -91,7 +91,7 @@ fn leaving_cost(view: &View, robot: &ViewRobot, first: Option<RobotId>, places: 
     out.min(PATH_MAX_M) + busy + plays
 }
 
-/// Where robots may wait now, off the ball and clear of a placement.
+/// Places where robots may wait now, off the ball and clear of a placement.
 fn waiting_places(view: &View) -> heapless::Vec<Point<Attack>, PLACES_MAX> {
     let (half_length, touch) = (view.field.length * 0.5, view.field.width * 0.5);
     let penalty = match view.phase {

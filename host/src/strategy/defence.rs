@@ -30,7 +30,7 @@ pub fn keeper(view: &View) -> (Task, OrderReason) {
     (keeper_line(view), OrderReason::OnBallLine { y: crossing(view, &ball) })
 }
 
-/// Where the ball's path would cross our goal line, or the ball's line to the middle while it does not come.
+/// Crossing of the ball's path and our goal line, or the ball's line to the middle while it does not come.
 fn crossing(view: &View, ball: &ViewBall) -> f32 {
     let (goal, v) = (view.our_goal(), ball.velocity);
     if v.x() < -LYING_SPEED_MAX_M_S {
@@ -189,7 +189,8 @@ impl Edge {
     }
 }
 
-/// Where the ray from our goal's middle leaves our area, grown by the distance that keeps a robot outside.
+/// Place where the ray from our goal's middle leaves our area, grown by the distance that keeps a robot
+/// outside.
 fn at_edge(view: &View, direction: Vector<Attack>) -> Point<Attack> {
     let (depth, half) = (view.field.penalty_depth + EDGE, view.field.penalty_width * 0.5 + EDGE);
     let (x, y) = (direction.x().max(1e-3), direction.y());

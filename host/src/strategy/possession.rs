@@ -13,7 +13,7 @@ use rules::contact;
 use super::pass::reach::Mover;
 use super::view::{RobotSet, View, ViewBall, ViewRobot, nearest};
 
-/// Who has the ball.
+/// Possession of the ball by robots.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Possession {
     /// No robot has the ball.
@@ -28,7 +28,7 @@ pub enum Possession {
 }
 
 impl Possession {
-    /// Who has it at this moment, after `self`; `contact` lists our robots whose sensors feel it.
+    /// Possession at this moment, after `self`; `contact` lists our robots whose sensors feel it.
     pub fn next(self, view: &View, contact: RobotSet) -> Self {
         let Some(ball) = view.ball else { return Self::Free };
         let held = match self {
@@ -81,12 +81,12 @@ fn has(robot: &ViewRobot, ball: &ViewBall, margin: f32) -> bool {
         && (ball.velocity - robot.velocity).norm() < RELATIVE_SPEED_MAX_M_S
 }
 
-/// Where and when a robot can play the ball.
+/// Place and time at which a robot can play the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
     /// Time until it is behind the ball, s.
     pub seconds: f32,
-    /// Where the ball is then.
+    /// Place of the ball then, m.
     pub ball: Point<Attack>,
 }
 

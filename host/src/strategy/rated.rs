@@ -45,7 +45,7 @@ pub enum Action {
     },
     /// The case that the robots would retrieve.
     Case(CastCase),
-    /// To keep the ball: by the case that is played, or by what the robots do without one.
+    /// Keeping the ball: by the case that is played, or by what the robots do without one.
     PlayOn,
 }
 
@@ -102,7 +102,7 @@ impl fmt::Display for Rated {
     }
 }
 
-/// What cases propose to the robot that plays the ball.
+/// Proposals of cases to the robot that plays the ball.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OfCases {
     /// The next pass of the case that it plays.

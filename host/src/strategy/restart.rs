@@ -92,7 +92,7 @@ pub fn penalty_spot(view: &View, ours: bool) -> Point<Attack> {
     view.placement.or_else(|| lies_at(view, mark)).unwrap_or(mark)
 }
 
-/// Where our kick-off is taken from, likewise.
+/// Place from which our kick-off is taken, likewise.
 pub fn kickoff_spot(view: &View) -> Point<Attack> {
     let mark = Point::default();
     view.placement.or_else(|| lies_at(view, mark)).unwrap_or(mark)

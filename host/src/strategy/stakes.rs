@@ -13,9 +13,9 @@ use rules::state::Stage;
 /// Relative worths of a goal for us and a goal against us; their mean is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stakes {
-    /// Of a goal for us.
+    /// Worth of a goal for us.
     pub ours: f32,
-    /// Of a goal against us.
+    /// Worth of a goal against us.
     pub theirs: f32,
 }
 
@@ -26,7 +26,7 @@ impl Default for Stakes {
 }
 
 impl Stakes {
-    /// Both are worth the same.
+    /// Worths of a level score: both the same.
     pub const EVEN: Self = Self { ours: 1.0, theirs: 1.0 };
 
     /// With `ahead` goals more than the opponents (negative: fewer) and `left` s to play.

@@ -114,7 +114,7 @@ pub enum Target {
     Teammate {
         /// Number of the teammate.
         id: RobotId,
-        /// Where it receives the ball, m.
+        /// Place of the reception, m.
         at: Point<Attack>,
         /// Room along the path, m.
         room: f32,

@@ -102,7 +102,7 @@ impl Clock {
         }
     }
 
-    /// That moment on our clock.
+    /// The moment `captured` on our clock.
     pub(super) fn ours(&self, captured: Captured) -> Instant {
         let offset = self.least.map_or(0, |[current, last]| current.min(last));
         Instant((captured + offset).max(0) as u64)

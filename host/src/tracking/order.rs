@@ -11,9 +11,9 @@ use super::seen::{Captured, Frame};
 /// Result of inserting a camera frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Placed {
-    /// It is the newest.
+    /// The newest frame.
     Newest,
-    /// It was inserted before this number of newer ones.
+    /// A frame inserted before this number of newer ones.
     Before(usize),
     /// This camera's frame of this moment is there already.
     Repeated,
@@ -102,7 +102,7 @@ impl<S: Copy> Timeline<S> {
     }
 }
 
-/// How late a camera frame may be, µs: three ticks of a 60 Hz camera. Waiting for older ones changes
+/// Largest delay of a camera frame, µs: three ticks of a 60 Hz camera. Waiting for older ones changes
 /// decisions already made.
 const LATE_MAX_US: Captured = 50_000;
 /// Camera frames kept: those of eight cameras of 60 Hz within the window.

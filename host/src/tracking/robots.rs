@@ -22,7 +22,7 @@ pub struct RobotCounts {
     pub new: u64,
     /// Farther from the robot of that number than it can have moved.
     pub jumped: u64,
-    /// Where another robot stands: a wrong number or colour.
+    /// Detections where another robot stands: a wrong number or colour.
     pub wrong_name: u64,
 }
 
@@ -203,7 +203,7 @@ impl Robots {
         })
     }
 
-    /// That robot at that moment, if it is confirmed.
+    /// The robot at that moment, if it is confirmed.
     pub(super) fn robot(&self, who: Who, at: Captured) -> Option<Moved> {
         self.believed[index(who.colour)][who.id.index()].as_ref().map(|track| track.moved(at))
     }
@@ -261,15 +261,15 @@ const SEEN_LATELY_S: f32 = 0.1;
 const SAME_PLACE_WITHIN_M: f32 = 0.09;
 /// An unseen robot is extrapolated straight on for this time, s, then assumed to stand still.
 const COASTS_FOR_S: f32 = 0.25;
-/// It is forgotten after that time, s.
+/// Time unseen after which a robot is forgotten, s.
 const FORGOTTEN_AFTER_S: f32 = 1.0;
 /// Uncertainty of the heading after extrapolation, rad.
 const LOST_HEADING_SIGMA_RAD: f32 = 1.0;
 /// Standard deviations of a new robot's speed, m/s, and rate, rad/s.
 const SPEED_SIGMA_M_S: f32 = 2.0;
 const RATE_SIGMA_RAD_S: f32 = 5.0;
-/// White acceleration, m²/s³: `steady` is a robot that holds its speed within 0.1 m/s; `changing` is 5 m/s² held
-/// for 0.2 s.
+/// White acceleration, m²/s³: `steady` is a robot that holds its speed within 0.1 m/s; `changing` is 5 m/s²
+/// held for 0.2 s.
 const PLACE_FREEDOM: Freedom = Freedom { steady: 0.15, changing: 10.0 };
 /// White angular acceleration, rad²/s³: as above with 0.3 rad/s, and 50 rad/s² held for 0.1 s.
 const HEADING_FREEDOM: Freedom = Freedom { steady: 2.0, changing: 250.0 };

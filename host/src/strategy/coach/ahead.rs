@@ -21,7 +21,7 @@ pub(super) struct Ahead {
     pub(super) receiver: RobotId,
     pub(super) rating: Rating,
     steps: PassAhead,
-    /// It is the attack of the Coerce and Attack Planner; whether its receiver coerced before.
+    /// Whether the receiver coerced before, if it is the attack of the Coerce and Attack Planner.
     planned: Option<bool>,
 }
 
@@ -42,14 +42,14 @@ impl Ahead {
         Task::Receive { at: self.rating.at, then: shot.one_touch.then_some(shot.aim) }
     }
 
-    /// Its reasons for the order, as numbers.
+    /// Reason of the order: the probabilities of the pass.
     pub(super) fn why(&self) -> OrderReason {
         OrderReason::Chances { receive: self.rating.receive(), goal: self.rating.goal() }
     }
 }
 
 impl Coach {
-    /// What our restart is aimed at: a shot with room, else the likeliest pass ahead, else the best remaining
+    /// Target of our restart: a shot with room, else the likeliest pass ahead, else the best remaining
     /// target.
     pub(super) fn target(&mut self, view: &View, kicker: RobotId, ball: &ViewBall) -> Target {
         let usual = support::target(view, kicker, ball.position);

@@ -27,7 +27,7 @@ use super::{Coach, Plan};
 pub(super) struct Intent {
     who: RobotId,
     since: Instant,
-    /// Where the ball was then.
+    /// Place of the ball when it was chosen.
     from: Point<Attack>,
     action: Action,
 }

@@ -35,7 +35,8 @@ pub(super) struct DefenceState {
 }
 
 impl DefenceState {
-    /// Where a field player clears the ball before our area, the others leave it room to get behind the ball.
+    /// The place, moved where a field player clears the ball before our area: the others leave it room to get
+    /// behind the ball.
     fn clear_of_clearance(&self, view: &View, id: RobotId, at: Point<Attack>) -> Point<Attack> {
         let (Some(ball), Some(robot)) = (view.ball, view.our(id)) else { return at };
         if self.keepers_ball != Some(false) || at.distance(ball.position) >= CLEARANCE_ROOM_M {

@@ -30,7 +30,7 @@ pub(super) struct Chosen {
 pub(super) struct RatedPlay {
     /// The case base that cases are retrieved from.
     pub(super) cases: CaseBase<'static>,
-    /// Which robot has the ball.
+    /// Robot that has the ball.
     possession: Possession,
     /// The action chosen from the list.
     pub(super) chosen: Option<Chosen>,

@@ -54,11 +54,11 @@ const HIDDEN_AFTER: Duration = Duration::millis(1000);
 const RESTING_SPEED_MAX_M_S: f32 = 0.1;
 /// A robot's centre this near a ball hides it, m: its diameter.
 const HIDES_WITHIN_M: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
-/// It steps back to this distance of the ball, m: two diameters show what lay beside one.
+/// Distance from the ball to which a robot steps back, m: two diameters show what lay beside one.
 const STEP_BACK_TO_M: f32 = 2.0 * HIDES_WITHIN_M;
 /// Time for stepping back: 0.2 m from rest at 3 m/s², the radio, and five frames of vision.
 const STEP_BACK_TIME: Duration = Duration::millis(800);
-/// It steps back again after this time at the earliest: between, it tries to get the ball.
+/// Least time between two steps back: between, the robot tries to get the ball.
 const STEP_BACK_EVERY: Duration = Duration::millis(2500);
 
 #[cfg(test)]

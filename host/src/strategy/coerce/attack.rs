@@ -10,16 +10,16 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 use super::super::view::{View, ViewRobot};
 use super::grid::{CELLS, Cell};
 
-/// What a pass to a place is worth.
+/// Worth of a pass to a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worth {
     /// P(receive | x), 0–1.
     pub receive: f32,
     /// P(goal | receive, x), 0–1.
     pub goal: f32,
-    /// How the ball is kicked.
+    /// Kick of the pass.
     pub kick: KickOrder,
-    /// Where the receiver shoots at.
+    /// Target of the receiver's shot, m.
     pub aim: Point<Attack>,
 }
 
@@ -30,7 +30,7 @@ impl Worth {
     }
 }
 
-/// Where passes start, and the robot that plays them.
+/// Start of passes, and the robot that plays them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassOrigin {
     /// Place of the ball, m.
@@ -98,7 +98,7 @@ impl Least {
 pub struct AttackSearch {
     /// The robot at the ball.
     pub kicker: RobotId,
-    /// What an attack must reach.
+    /// Least values that an attack must reach.
     pub least: Least,
     /// Seed of the [`SAMPLES`] places.
     pub seed: u64,

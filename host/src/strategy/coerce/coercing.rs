@@ -24,11 +24,11 @@ pub struct Coercer {
     pub robot: RobotId,
     /// The opponent that follows it.
     pub marker: RobotId,
-    /// Its cell of the grid.
+    /// Cell of the grid to which it goes.
     pub cell: Cell,
     /// The middle of that cell.
     pub at: Point<Attack>,
-    /// Where the opponent is expected then.
+    /// Expected place of the opponent then, m.
     pub expected: Point<Attack>,
     /// The interference likelihood of that opponent there …
     pub interference: f32,
@@ -153,8 +153,8 @@ pub fn coerce(
     plan
 }
 
-/// Where an opponent that follows robots drives to when the one it follows is at `at`: to its distance from
-/// it, on the side that it keeps to.
+/// Place to which an opponent that follows robots drives when the one it follows is at `at`: to its distance
+/// from it, on the side that it keeps to.
 pub fn response(
     situation: &tactics::CoerceSituation<'_>,
     marker: &Detected,

@@ -30,7 +30,7 @@ pub use planner::{CapPlan, CoerceEnd, CoercePart, CoerceProgress, FinalAttack, F
 /// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoerceSettings {
-    /// How our robots drive, for the times at which they reach a cell.
+    /// Limits of our robots, for the times at which they reach a cell.
     pub robot: FreeLimits,
     /// Longest time for coercing, s: part of the time that a free kick may take.
     pub coerce_time: f32,
@@ -46,7 +46,8 @@ pub struct CoerceSettings {
     pub least: attack::Least,
     /// Coercers stay this far from pass and shot, m (D19).
     pub off_ways: f32,
-    /// Least distance of a coercer from the ball, m: the distance that robots keep from a ball that is not in play.
+    /// Least distance of a coercer from the ball, m: the distance that robots keep from a ball that is not in
+    /// play.
     pub off_ball: f32,
     /// Least distance of a coercer from both areas, m: the rules' 0.2 m at free kicks, a body, a margin.
     pub off_areas: f32,

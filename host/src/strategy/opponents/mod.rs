@@ -18,7 +18,7 @@ use super::support::{self, Target};
 use super::view::{ROBOTS_MAX, View, ViewBall};
 use super::{Orders, defence, restart, roles};
 
-/// What decides a side's open play.
+/// Team whose open play a side plays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Team {
@@ -31,7 +31,7 @@ pub enum Team {
     Marking,
     /// A wall between ball and goal that follows the ball.
     Zone,
-    /// Its robots always stand still: a team that does not score against it cannot score.
+    /// Robots that always stand still: a team that does not score against it cannot score.
     Idle,
 }
 
@@ -41,7 +41,7 @@ impl Team {
     /// Those that move and are not ours.
     pub const OPPONENTS: [Self; 3] = [Self::Reactive, Self::Marking, Self::Zone];
 
-    /// Its name on command lines and in files.
+    /// Name on command lines and in files.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Ours => "ours",
@@ -66,7 +66,7 @@ pub(super) struct OpponentModel {
     first: Option<RobotId>,
     /// Target of the ball, since when, from where.
     aim: Option<(Instant, Point<Attack>, Target)>,
-    /// Which robot had which of the style's places.
+    /// Robots that had the style's places, by place.
     held: [Option<RobotId>; PLACES_MAX],
 }
 
@@ -75,7 +75,7 @@ pub(super) struct OpponentModel {
 struct Style {
     /// The target chosen for the robot at the ball.
     target: fn(&View, RobotId, Point<Attack>) -> Target,
-    /// Where the others stand, most urgent first, while `wanted` of them are free.
+    /// Places of the others, most urgent first, while `wanted` of them are free.
     places: fn(&View, &ViewBall, usize) -> Places,
     /// Whether they stand there against a free kick too; else two defend, one is the wall and the others
     /// mark.
@@ -156,7 +156,7 @@ impl OpponentModel {
         orders
     }
 
-    /// Where `wanted` robots stand against a free kick, most urgent first; `None`: as all teams do.
+    /// Places of `wanted` robots against a free kick, most urgent first; `None`: as all teams do.
     pub(super) fn against_free_kick(&self, view: &View, ball: &ViewBall, wanted: usize) -> Option<Places> {
         let mut places =
             self.style.keeps_places_at_free_kicks.then(|| (self.style.places)(view, ball, wanted))?;

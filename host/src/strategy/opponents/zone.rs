@@ -32,7 +32,7 @@ const WALL_SPACING_M: f32 = 0.3;
 /// The wall stands this far before the ball, m: the nearest it may be while the ball is the opponents', with
 /// a body.
 const WALL_OFF_BALL_M: f32 = 0.8;
-/// It never comes nearer to the goal than this beyond the area's depth, m.
+/// Least distance of the wall from the goal beyond the area's depth, m.
 const WALL_BEYOND_AREA_MIN_M: f32 = 0.35;
 /// Nor farther from it than this share of the field: a wall at the halfway line could be chipped over, to the
 /// keeper alone.

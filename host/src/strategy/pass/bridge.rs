@@ -16,7 +16,7 @@ pub struct Refined {
 }
 
 impl Refined {
-    /// What the refinement adds to P(goal).
+    /// Gain of P(goal) by the refinement.
     pub fn gain(&self) -> f32 {
         self.best.value() - self.proposed.value()
     }

@@ -15,13 +15,13 @@ pub struct Fates {
     pub by_teammate: u32,
     /// An opponent intercepted it.
     pub intercepted: u32,
-    /// It passed the receiver.
+    /// Passes that went past the receiver.
     pub missed: u32,
     /// The receiver came too late.
     pub late: u32,
-    /// It left the field.
+    /// Passes that left the field.
     pub out: u32,
-    /// It was never kicked.
+    /// Passes that were never kicked.
     pub no_kick: u32,
 }
 

@@ -17,7 +17,7 @@ use super::reach::Mover;
 pub struct PassOpponent {
     /// The opponent's number in its team.
     pub id: RobotId,
-    /// Its motion and limits.
+    /// Motion and limits of the opponent.
     pub mover: Mover,
 }
 
@@ -26,7 +26,7 @@ pub struct PassOpponent {
 pub struct Interceptor {
     /// The opponent's number in its team.
     pub id: RobotId,
-    /// Its time there less the ball's, s.
+    /// Time of the opponent there less the ball's, s.
     pub margin: f32,
     /// Distance along the path, m.
     pub along: f32,

@@ -30,7 +30,7 @@ pub enum PassKick {
 }
 
 impl PassKick {
-    /// As an order of the protocol.
+    /// The kick as an order of the protocol.
     pub fn order(self) -> KickOrder {
         match self {
             Self::Flat { speed } => KickOrder::Flat((speed * 100.0) as u16),
@@ -58,7 +58,7 @@ pub struct FlatKick {
     pub speed: f32,
     slide: f32,
     roll: f32,
-    /// Where and when it starts to roll, and how fast.
+    /// Distance, time and speed at which it starts to roll.
     slide_distance: f32,
     slide_time: f32,
     roll_speed: f32,
@@ -106,7 +106,7 @@ pub struct ChipKick {
     pub speed: f32,
     /// Along the ground until it first comes down, m/s.
     pub along: f32,
-    /// Where it first comes down, m, and when, s.
+    /// Distance at which it first comes down, m, and time, s.
     pub lands: f32,
     /// Time of the first touch-down, s.
     pub lands_at: f32,

@@ -26,7 +26,7 @@ pub struct Mover {
 }
 
 impl Mover {
-    /// That robot with these limits.
+    /// A robot at this place and velocity, with these limits.
     pub fn new(position: Point<Attack>, velocity: Vector<Attack>, limits: &FreeLimits) -> Self {
         let FreeLimits { speed, acceleration, .. } = *limits;
         let per_acceleration = 1.0 / acceleration;

@@ -21,7 +21,7 @@ use super::reach::Mover;
 /// Probabilities of a pass to a place, with their factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rating {
-    /// Where the pass is received.
+    /// Place of the reception, m.
     pub at: Point<Attack>,
     /// The kick that is likelier to end in a goal.
     pub kick: PassKick,
@@ -43,7 +43,7 @@ pub struct Rating {
     pub spoiler: (Spoiler, f32),
     /// The shot after the reception.
     pub shot: ShotFrom,
-    /// What having the ball there is worth without a shot, 0–1; 0 where only goals count.
+    /// Worth of having the ball there without a shot, 0–1; 0 where only goals count.
     pub held: f32,
 }
 
@@ -56,7 +56,7 @@ pub struct ShotFrom {
     pub angle: f32,
     /// Time until it is there, s.
     pub time: f32,
-    /// Without stopping the ball first.
+    /// Whether the receiver shoots without stopping the ball first.
     pub one_touch: bool,
 }
 
@@ -167,7 +167,7 @@ impl<'k> PassScene<'k> {
         Self { receiver, ..self.clone() }
     }
 
-    /// Where the pass starts, x0.
+    /// Start of the pass, x0.
     pub fn from(&self) -> Point<Attack> {
         self.from
     }
@@ -360,7 +360,7 @@ impl<'k> PassScene<'k> {
         worst
     }
 
-    /// In the opponents' defence area, lines included.
+    /// Whether a place is in the opponents' defence area, lines included.
     pub fn in_their_area(&self, at: Point<Attack>) -> bool {
         let place = Point::new(at.x(), at.y());
         at.x() > 0.0 && at.x() <= self.half[0] && self.their_area.iter().any(|shape| shape.contains(place))

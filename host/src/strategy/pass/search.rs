@@ -23,7 +23,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// Its samples are those of this seed.
+    /// A search whose samples are those of this seed.
     pub fn new(seed: u64) -> Self {
         Self { random: Xoshiro128PlusPlus::seed_from_u64(seed), last: None }
     }
@@ -100,7 +100,7 @@ fn better(best: Option<Rating>, scene: &PassScene<'_>, at: Point<Attack>) -> Rat
 pub struct Offer {
     /// Number of the receiving teammate.
     pub receiver: RobotId,
-    /// Its place, with the factors.
+    /// Place of the reception, with the factors.
     pub rating: Rating,
 }
 

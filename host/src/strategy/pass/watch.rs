@@ -70,19 +70,19 @@ pub enum PassVerdict {
         /// Time after the kick, s.
         after: f32,
     },
-    /// It passed, or stopped short of, a receiver that was there.
+    /// A ball that passed, or stopped short of, a receiver that was there.
     Missed {
         /// The ball's least distance from x*, m.
         by: f32,
     },
-    /// It passed x* before the receiver was there.
+    /// A ball that passed x* before the receiver was there.
     Late {
         /// The receiver's distance from x* then, m.
         receiver_off: f32,
     },
-    /// It left the field before any robot touched it.
+    /// A ball that left the field before any robot touched it.
     Out {
-        /// Where it left the field.
+        /// Place where it left the field.
         at: Point<Field>,
     },
     /// The ball never left the passer.
@@ -112,7 +112,7 @@ pub struct PassWatch {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Flight {
     since: Instant,
-    /// Its least distance from x* so far, m.
+    /// Least distance of the ball from x* so far, m.
     nearest: f32,
     /// When it passed x*: the receiver's distance, m.
     receiver_off: Option<f32>,

@@ -25,9 +25,9 @@ pub struct Opening {
 /// A range of directions, rad from the opening's middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Its right end, rad.
+    /// Right end of the gap, rad.
     pub right: f32,
-    /// Its left end, rad.
+    /// Left end of the gap, rad.
     pub left: f32,
 }
 

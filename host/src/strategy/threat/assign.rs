@@ -23,7 +23,7 @@ struct Primary {
     needed: bool,
 }
 
-/// What our defence faces: the first-level threat, its cover, and the opponents that may become one.
+/// Threats that our defence faces: the first-level threat, its cover, and the opponents that may become one.
 #[derive(Clone, Copy)]
 pub(super) struct Assessment<'t> {
     pub(super) threat: &'t FirstLevel,
@@ -248,7 +248,7 @@ impl Giving<'_> {
         self.given.iter().any(|other| other.at.distance(at) < room)
     }
 
-    /// Where the edge crosses the line from our goal to the opponent, beside the primary that is needed.
+    /// Crossing of the edge and the line from our goal to the opponent, beside the primary that is needed.
     fn edge_place(&self, position: &Position, cover: &Cover) -> Point<Attack> {
         let goal = self.view.our_goal();
         let at = self.edge.crossing(goal, position.danger.at - goal);

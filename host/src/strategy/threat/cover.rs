@@ -45,9 +45,9 @@ pub struct Cover {
     pub case: Case,
     /// The goal as seen from the threat.
     pub opening: Opening,
-    /// Where the keeper stands.
+    /// Place of the keeper, m.
     pub keeper: Point<Attack>,
-    /// Where the primary defenders stand that are needed, from −y to +y along the edge.
+    /// Places of the primary defenders that are needed, from −y to +y along the edge.
     pub primaries: heapless::Vec<Point<Attack>, 2>,
     /// The part of the open angle that bodies at these places leave open, rad.
     pub uncovered: f32,
@@ -114,7 +114,7 @@ impl<'v> Placing<'v> {
         place.distance(self.opening.from)
     }
 
-    /// Where the ray `off` the middle crosses our goal line.
+    /// Crossing of the ray `off` the middle and our goal line.
     fn on_goal_line(&self, off: f32) -> Point<Attack> {
         let (from, direction) = (self.opening.from, self.opening.direction(off));
         let (goal, half) = (self.view.our_goal(), self.view.field.goal_width * 0.5);
@@ -128,7 +128,7 @@ impl<'v> Placing<'v> {
         self.edge.crossing(end, self.opening.from - end)
     }
 
-    /// In front of the middle of the goal.
+    /// Place in front of the middle of the goal.
     fn before_goal(&self) -> Point<Attack> {
         self.view.our_goal() + Vector::new(self.settings.keeper_back, 0.0)
     }

@@ -80,12 +80,12 @@ impl Edge {
         0.5 * self.length() + side * from_middle
     }
 
-    /// Its point nearest to a place.
+    /// Point of the edge nearest to a place.
     pub fn nearest(&self, place: Point<Attack>) -> Point<Attack> {
         self.point(self.along(place))
     }
 
-    /// Where the ray from a point of our goal line in this direction leaves the edge.
+    /// Crossing of the edge and the ray from a point of our goal line in this direction.
     pub fn crossing(&self, from: Point<Attack>, direction: Vector<Attack>) -> Point<Attack> {
         let along = direction.unit().unwrap_or(Vector::new(1.0, 0.0));
         // Within at the goal line, outside at BEYOND_FIELD_M, and the region is convex.

@@ -80,8 +80,8 @@ fn in_the_way(view: &View, rule_role: RuleRole, at: Point<Attack>) -> bool {
     placed && view.ball.is_some_and(|ball| ball.position.distance(at) < PLACER_ROOM_M)
 }
 
-/// Where a body of that role must not be, in the attack frame: we defend −x in it, as a team of that end does
-/// on the field.
+/// Places where a body of that role must not be, in the attack frame: we defend −x in it, as a team of that
+/// end does on the field.
 fn forbidden_to(view: &View, rule_role: RuleRole) -> KeepOut {
     let on_field = |at: Point<Attack>| Point::<Field>::new(at.x(), at.y());
     keep_out(&Situation {

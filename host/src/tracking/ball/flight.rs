@@ -240,7 +240,7 @@ const TIME_MIN_S: f32 = 0.06;
 const MOMENT_SHIFTS_SIGMA: [f32; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
 /// Uncertainty of the moment by a turn, s: half a frame.
 pub(super) const MOMENT_SIGMA_SHARP_S: f32 = 0.008;
-/// Where the turn was detected late, the moment is known to two frames, s.
+/// Uncertainty of the moment of a turn that was detected late, s: two frames.
 pub(super) const MOMENT_SIGMA_VAGUE_S: f32 = 0.03;
 /// Uncertainty of the kick's place, m.
 const PLACE_SIGMA_M: f32 = 0.01;

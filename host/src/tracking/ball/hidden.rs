@@ -22,7 +22,7 @@ pub(crate) struct HiddenBall {
     last: Option<Ball>,
     /// The opponent that hides it from all cameras, if one does.
     by: Option<Who>,
-    /// Where it was placed for the restart that is to come.
+    /// Place where it was put for the restart that is to come.
     placed: Option<Point<Field>>,
 }
 

@@ -24,7 +24,7 @@ pub(super) enum Air {
     Down,
     /// Just kicked: a flight would be detected soon.
     Watched(Launch),
-    /// In its first hop, estimated from these detections.
+    /// A ball in its first hop, estimated from these detections.
     Flying(Launch, Flight),
     /// Bouncing after its first touch.
     Hopping(Flight),

@@ -18,7 +18,7 @@ use crate::world::BallModels;
 pub(super) struct Glimpse {
     /// On the ground; for a ball in the air, below it.
     pub(super) position: Point<Field>,
-    /// Where the camera saw it on the field surface.
+    /// Place at which the camera saw it on the field surface.
     pub(super) apparent: Point<Field>,
     pub(super) camera: u32,
     pub(super) at: Captured,
@@ -47,7 +47,7 @@ pub(super) struct Track {
     counted: Captured,
     pub(super) images: u16,
     quality: f32,
-    /// It slides above this speed, m/s.
+    /// Speed above which the ball slides, m/s.
     pub(super) rolls_below: f32,
     strange: Option<Glimpse>,
 }
@@ -66,7 +66,7 @@ impl Track {
         }
     }
 
-    /// Its place at `at` if no robot touches it, and its velocity.
+    /// Place and velocity of the ball at `at` if no robot touches it.
     pub(super) fn moved(&self, at: Captured, models: &BallModels) -> (Point<Field>, Vector<Field>) {
         let dt = seconds(at - self.at);
         if dt <= 0.0 {
@@ -158,8 +158,8 @@ impl Track {
     }
 }
 
-/// White acceleration of a rolling ball, m²/s³: `steady` is a field surface that decelerates it 0.3 m/s² more or
-/// less than configured; `changing` is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
+/// White acceleration of a rolling ball, m²/s³: `steady` is a field surface that decelerates it 0.3 m/s² more
+/// or less than configured; `changing` is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
 const FREEDOM: Freedom = Freedom { steady: 0.02, changing: 8.0 };
 /// A detection is an outlier when its distance squared is more variances than this ...
 const OUTLIER_VARIANCES_MIN: f32 = 20.0;
