@@ -50,6 +50,15 @@ use crate::strategy::Tactics;
 pub use change::ParameterChange;
 pub(crate) use parameters::KICK_RANGE;
 
+/// Longest part of an error in a file of settings that is printed, characters.
+const MESSAGE_CHARS_MAX: usize = 300;
+/// Longest part of its line that is printed, characters.
+const LINE_CHARS_MAX: usize = 80;
+const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
+/// Default baud rate, bits a second: it carries 100 snapshots a second for a team of six (some 50 kB/s) and
+/// 75 for one of eleven (80).
+const BAUD_DEFAULT: u32 = 1_000_000;
+
 /// A team's settings: from a file or flags; every field is optional.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -215,11 +224,6 @@ fn place_of(text: &str, broken: &toml::de::Error) -> String {
     format!("line {}: {what}: `{}`", number + 1, excerpt(line.trim(), LINE_CHARS_MAX))
 }
 
-/// Longest part of an error in a file of settings that is printed, characters.
-const MESSAGE_CHARS_MAX: usize = 300;
-/// Longest part of its line that is printed, characters.
-const LINE_CHARS_MAX: usize = 80;
-
 impl TeamSettings {
     /// Reads `team.toml`; unknown keys are errors.
     pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
@@ -296,8 +300,6 @@ impl TeamSettings {
     }
 }
 
-const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
-
 fn colour(label: &str) -> Result<Colour, ConfigError> {
     [Colour::Blue, Colour::Yellow]
         .into_iter()
@@ -356,10 +358,6 @@ impl RobotLink {
         if device.is_empty() { Err(wrong()) } else { Ok(Self::Serial { device: device.to_owned(), baud }) }
     }
 }
-
-/// Default baud rate, bits a second: it carries 100 snapshots a second for a team of six (some 50 kB/s) and
-/// 75 for one of eleven (80).
-const BAUD_DEFAULT: u32 = 1_000_000;
 
 #[cfg(test)]
 mod tests {

@@ -13,6 +13,14 @@ use crate::referee::team_port::TeamPortRequest;
 use crate::strategy::View;
 use crate::strategy::view::nearest;
 
+/// A keeper counts as missing after this time: vision loses a robot for less, and the radio link is restored
+/// within half a second.
+const KEEPER_MISSING_AFTER: Duration = Duration::millis(2000);
+/// A keeper is requested again after this time, if the requested one is not named.
+const REQUEST_EVERY: Duration = Duration::millis(3000);
+/// A robot that is leaving needs less: division A's diagonal at the 1.5 m/s of a stop takes 10 s.
+const LEAVING_TIME_MAX: Duration = Duration::millis(12_000);
+
 /// The requests sent, and since when their causes persist.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Requests {
@@ -103,14 +111,6 @@ impl Requests {
         }
     }
 }
-
-/// A keeper counts as missing after this time: vision loses a robot for less, and the radio link is restored
-/// within half a second.
-const KEEPER_MISSING_AFTER: Duration = Duration::millis(2000);
-/// A keeper is requested again after this time, if the requested one is not named.
-const REQUEST_EVERY: Duration = Duration::millis(3000);
-/// A robot that is leaving needs less: division A's diagonal at the 1.5 m/s of a stop takes 10 s.
-const LEAVING_TIME_MAX: Duration = Duration::millis(12_000);
 
 #[cfg(test)]
 mod tests;

@@ -8,6 +8,13 @@ use motion::trajectory::Motion;
 use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 
+/// Longest time for which a robot is extrapolated straight on, s: at 3 m/s² it changes its speed by 0.75 m/s
+/// in that time, and no delay that is worth compensating is longer (capture to motion is 45–65 ms in the
+/// league).
+pub const STRAIGHT_MAX: f32 = 0.25;
+/// Acceleration of free fall, m/s².
+pub(crate) const GRAVITY_M_S2: f32 = 9.81;
+
 /// The field at one moment.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct World {
@@ -247,13 +254,6 @@ impl Robot {
         Self { pose, ..*self }
     }
 }
-
-/// Longest time for which a robot is extrapolated straight on, s: at 3 m/s² it changes its speed by 0.75 m/s
-/// in that time, and no delay that is worth compensating is longer (capture to motion is 45–65 ms in the
-/// league).
-pub const STRAIGHT_MAX: f32 = 0.25;
-/// Acceleration of free fall, m/s².
-pub(crate) const GRAVITY_M_S2: f32 = 9.81;
 
 /// The index of a team in an array of two.
 pub(crate) const fn index(colour: Colour) -> usize {

@@ -11,6 +11,9 @@ use super::parameters::{ACCELERATION, KICK, PARAMETERS, Parameter, SPEED};
 use super::{ConfigError, DriveSettings, TeamConfig, TeamSettings, error};
 use crate::HostSettings;
 
+/// Longest part of an unknown key that is told, characters.
+const KEY_CHARS_MAX: usize = 40;
+
 /// A new value for a parameter, as the page sends it and a trace keeps it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -119,9 +122,6 @@ impl ParameterChange {
         Ok(())
     }
 }
-
-/// Longest part of an unknown key that is told, characters.
-const KEY_CHARS_MAX: usize = 40;
 
 impl TeamConfig {
     /// This configuration as it is with `change`, checked as a file is. Refused are parameters that a host

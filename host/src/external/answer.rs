@@ -14,6 +14,10 @@ use super::form::{COORDINATE_MAX_M, Pair, StrategyOrder, StrategyTask, point};
 use crate::strategy::threat::{ThreatSettings, legal_for};
 use crate::strategy::{Order, OrderReason, Role, Task, View};
 
+/// Greatest speed of a kick that is ordered, m/s: robots kick no faster than the rules permit whatever is
+/// ordered.
+const KICK_SPEED_MAX_M_S: f32 = 10.0;
+
 /// One line of the strategy.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -139,7 +143,3 @@ pub(super) fn order(view: &View, robot: RobotId, task: Task) -> Order {
     };
     Order { robot, role, task, why: OrderReason::External }
 }
-
-/// Greatest speed of a kick that is ordered, m/s: robots kick no faster than the rules permit whatever is
-/// ordered.
-const KICK_SPEED_MAX_M_S: f32 = 10.0;

@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 use crate::strategy::view::{ROBOTS_MAX, View, ViewBall, ViewRobot};
 use crate::strategy::{Order, OrderReason, Orders, Role, Task};
 
+/// Farthest coordinate of an order, m: beyond the largest field with its surroundings.
+pub(super) const COORDINATE_MAX_M: f32 = 20.0;
+
 /// A place or a velocity: x, y.
 pub type Pair = [f32; 2];
 
@@ -333,6 +336,3 @@ impl StrategyOrder {
 pub(super) fn is_bound(order: &Order) -> bool {
     matches!(order.why, OrderReason::TooMany { .. }) || order.role == Role::DoubleTouchBlocked
 }
-
-/// Farthest coordinate of an order, m: beyond the largest field with its surroundings.
-pub(super) const COORDINATE_MAX_M: f32 = 20.0;

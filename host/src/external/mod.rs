@@ -27,6 +27,9 @@ pub use link::{StrategyLink, StrategyStarter};
 
 use crate::strategy::{Order, OrderReason, Orders, Role, Task, View};
 
+/// An answer is followed for this long, s: robots of a program that has stopped stand within 0.1 s.
+pub const ANSWERS_WITHIN: Duration = Duration::millis(80);
+
 /// The host's end of it.
 #[derive(Clone, Debug)]
 pub(crate) struct External {
@@ -131,9 +134,6 @@ fn replaced(view: &View, order: &Order, tasks: Option<&[(RobotId, Task)]>) -> Or
         None => order.clone(),
     }
 }
-
-/// An answer is followed for this long, s: robots of a program that has stopped stand within 0.1 s.
-pub const ANSWERS_WITHIN: Duration = Duration::millis(80);
 
 #[cfg(test)]
 mod tests;

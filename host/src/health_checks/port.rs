@@ -6,6 +6,13 @@ use protocol::{Duration, Instant};
 
 use crate::Host;
 
+/// Time without camera frames after which they count as missing, from the start and from the last one.
+const SILENCE_MAX: Duration = Duration::millis(1_000);
+/// Another program that has sent nothing for this time has ended.
+const FOREIGN_SILENCE_MAX: Duration = Duration::millis(2_000);
+/// Fewer packets may come from a program that scans ports.
+const FOREIGN_MIN: u64 = 3;
+
 /// Input on vision's port without camera frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VisionPort {
@@ -92,13 +99,6 @@ impl Port {
         }
     }
 }
-
-/// Time without camera frames after which they count as missing, from the start and from the last one.
-const SILENCE_MAX: Duration = Duration::millis(1_000);
-/// Another program that has sent nothing for this time has ended.
-const FOREIGN_SILENCE_MAX: Duration = Duration::millis(2_000);
-/// Fewer packets may come from a program that scans ports.
-const FOREIGN_MIN: u64 = 3;
 
 #[cfg(test)]
 mod tests {

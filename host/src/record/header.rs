@@ -19,6 +19,8 @@ use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::cases_of;
 use crate::strategy::{Tactics, Team};
 
+const RELAYS: [(&str, Relay); 3] = [("no", Relay::No), ("to-each", Relay::ToEach), ("to-all", Relay::ToAll)];
+
 /// The header of a trace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordingHeader {
@@ -171,8 +173,6 @@ impl RecordingHeader {
 fn hash_of(cases: CaseBase<'_>) -> String {
     format!("{:08x}", cases.hash())
 }
-
-const RELAYS: [(&str, Relay); 3] = [("no", Relay::No), ("to-each", Relay::ToEach), ("to-all", Relay::ToAll)];
 
 impl HostHeader {
     /// The header of one host that starts at `began`.

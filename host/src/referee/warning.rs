@@ -11,6 +11,9 @@ use super::identity::{SourceKey, SourcePin};
 use super::verdict::Doubt;
 use super::{HALT_AFTER, Listener, OnSilence, SILENCE};
 
+/// Time for which a step of the clock is reported.
+const STEP_REPORTED: Duration = Duration::millis(5_000);
+
 /// A fault of the referee's sources that persists now.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
@@ -65,9 +68,6 @@ pub enum Warning {
         pin: SourcePin,
     },
 }
-
-/// Time for which a step of the clock is reported.
-const STEP_REPORTED: Duration = Duration::millis(5_000);
 
 impl Listener {
     /// The faults of the sources now; empty while one referee sends packets in order.

@@ -18,6 +18,21 @@ use crate::learned::{Estimate, Kicks};
 use crate::strategy::{Order, OrderReason, Orders, Role, Task, View};
 use crate::world::World;
 
+/// Fewest kicks of a test: of five, two may be spoiled.
+const KICKS_LEAST: u8 = 5;
+/// Most: as many as a fit keeps.
+const KICKS_MOST: u8 = 15;
+/// Speeds in turn, cm/s: as passes have them; with the greatest gain the least of them is still ordered
+/// faster than 1.5 m/s, below which a kick is not told from a touch.
+const SPEEDS_CM_S: [u16; 4] = [320, 260, 380, 440];
+/// A ball faster than this was kicked, m/s: the weakest kicker gives 1.04, and a ball at the dribbler of a
+/// robot that lines up moves slower.
+const KICKED_SPEED_MIN_M_S: f32 = 0.9;
+/// A ball slower than this is fetched, m/s.
+const RESTING_SPEED_MAX_M_S: f32 = 0.3;
+/// A ball that has moved less lies where it was, m: the robot pushes it while it lines up.
+const SAME_PLACE_WITHIN_M: f32 = 0.4;
+
 /// Request of the operator, as JSON in a trace and from the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
@@ -221,21 +236,6 @@ impl RobotTest {
         }
     }
 }
-
-/// Fewest kicks of a test: of five, two may be spoiled.
-const KICKS_LEAST: u8 = 5;
-/// Most: as many as a fit keeps.
-const KICKS_MOST: u8 = 15;
-/// Speeds in turn, cm/s: as passes have them; with the greatest gain the least of them is still ordered
-/// faster than 1.5 m/s, below which a kick is not told from a touch.
-const SPEEDS_CM_S: [u16; 4] = [320, 260, 380, 440];
-/// A ball faster than this was kicked, m/s: the weakest kicker gives 1.04, and a ball at the dribbler of a
-/// robot that lines up moves slower.
-const KICKED_SPEED_MIN_M_S: f32 = 0.9;
-/// A ball slower than this is fetched, m/s.
-const RESTING_SPEED_MAX_M_S: f32 = 0.3;
-/// A ball that has moved less lies where it was, m: the robot pushes it while it lines up.
-const SAME_PLACE_WITHIN_M: f32 = 0.4;
 
 /// Whether the ball lies outside the field or in a defence area.
 fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {

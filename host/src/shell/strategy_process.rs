@@ -9,6 +9,15 @@ use std::time::{Duration, Instant};
 
 use crate::external::{StrategyLink, StrategyStarter};
 
+/// Longest time for an answer where nothing runs in real time: a program that plans for longer is stuck.
+const ANSWER_WAIT_MAX: Duration = Duration::from_secs(5);
+/// A program that ended is started again after this time.
+const RESTART_AFTER: Duration = Duration::from_millis(500);
+/// Longest line of an answer, bytes: 16 orders of 200.
+const LINE_BYTES_MAX: u64 = 64 * 1024;
+/// Answers that wait to be read.
+const ANSWERS_KEPT: usize = 8;
+
 /// A strategy's program and its pipes.
 #[derive(Debug)]
 pub struct StrategyProcess {
@@ -120,15 +129,6 @@ fn read(output: impl io::Read, send: &SyncSender<String>) {
         }
     }
 }
-
-/// Longest time for an answer where nothing runs in real time: a program that plans for longer is stuck.
-const ANSWER_WAIT_MAX: Duration = Duration::from_secs(5);
-/// A program that ended is started again after this time.
-const RESTART_AFTER: Duration = Duration::from_millis(500);
-/// Longest line of an answer, bytes: 16 orders of 200.
-const LINE_BYTES_MAX: u64 = 64 * 1024;
-/// Answers that wait to be read.
-const ANSWERS_KEPT: usize = 8;
 
 #[cfg(test)]
 mod tests {

@@ -9,6 +9,9 @@ use protocol::{CaseId, RobotId};
 
 use super::view::View;
 
+/// A kick that ends this near the goal line is a shot, m: cases shoot at the line itself, in whole mm.
+const SHOT_ENDS_WITHIN_M: f32 = 0.01;
+
 /// A case, and our robots that play it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CastCase {
@@ -106,9 +109,6 @@ pub fn retrieve(
     };
     Some(CastCase { case: found.case, robots, step })
 }
-
-/// A kick that ends this near the goal line is a shot, m: cases shoot at the line itself, in whole mm.
-const SHOT_ENDS_WITHIN_M: f32 = 0.01;
 
 #[cfg(test)]
 mod tests {

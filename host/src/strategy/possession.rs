@@ -13,6 +13,23 @@ use rules::contact;
 use super::pass::reach::Mover;
 use super::view::{RobotSet, View, ViewBall, ViewRobot, nearest};
 
+/// Half the width of the dribbler opening, m: front plates are 0.12 to 0.16 wide.
+const OPENING_HALF_M: f32 = 0.06;
+/// A robot that has the ball keeps it while that is this much farther off, m: a ball bounces off the roller.
+const KEPT_MARGIN_M: f32 = 0.03;
+/// A ball felt by the sensor of a robot is at most this far from its centre, m: cameras err by less.
+const FELT_WITHIN_M: f32 = 0.16;
+/// A ball that passes a robot is faster than this against it, m/s.
+const RELATIVE_SPEED_MAX_M_S: f32 = 1.0;
+/// A slower ball rests, m/s.
+const RESTING_SPEED_MAX_M_S: f32 = 0.2;
+/// From the ball to the centre of a robot behind it, m.
+const BEHIND_BALL_M: f32 = contact::TOUCHES_WITHIN;
+/// Steps along the ball's path, s.
+const TIME_STEP_S: f32 = 0.05;
+/// Cost of moving around a ball, s: half a circle of 0.2 m radius at moderate speed (estimate).
+const AROUND_BALL_COST_S: f32 = 0.4;
+
 /// Possession of the ball by robots.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Possession {
@@ -129,23 +146,6 @@ pub fn arrival(
     let there = mover.time_to(at - aim * BEHIND_BALL_M) + around;
     Arrival { seconds: there.max(if speed > RESTING_SPEED_MAX_M_S { time } else { 0.0 }), ball: at }
 }
-
-/// Half the width of the dribbler opening, m: front plates are 0.12 to 0.16 wide.
-const OPENING_HALF_M: f32 = 0.06;
-/// A robot that has the ball keeps it while that is this much farther off, m: a ball bounces off the roller.
-const KEPT_MARGIN_M: f32 = 0.03;
-/// A ball felt by the sensor of a robot is at most this far from its centre, m: cameras err by less.
-const FELT_WITHIN_M: f32 = 0.16;
-/// A ball that passes a robot is faster than this against it, m/s.
-const RELATIVE_SPEED_MAX_M_S: f32 = 1.0;
-/// A slower ball rests, m/s.
-const RESTING_SPEED_MAX_M_S: f32 = 0.2;
-/// From the ball to the centre of a robot behind it, m.
-const BEHIND_BALL_M: f32 = contact::TOUCHES_WITHIN;
-/// Steps along the ball's path, s.
-const TIME_STEP_S: f32 = 0.05;
-/// Cost of moving around a ball, s: half a circle of 0.2 m radius at moderate speed (estimate).
-const AROUND_BALL_COST_S: f32 = 0.4;
 
 #[cfg(test)]
 mod tests {

@@ -3,6 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// The name of [`Tactics::ROUND_1`].
+pub const ROUND_1: &str = "round-1";
+
 /// What the coach uses beyond rule-compliant play. A part that a recording's header does not name was not
 /// played.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -127,9 +130,6 @@ impl Default for Tactics {
         Self { bridge: true, rated: true, ..Self::ROUND_1 }
     }
 }
-
-/// The name of [`Tactics::ROUND_1`].
-pub const ROUND_1: &str = "round-1";
 
 #[cfg(test)]
 mod tests {

@@ -15,6 +15,19 @@ use super::super::view::{View, ViewBall, ViewRobot};
 use super::Coach;
 use super::pass_state::RunningPass;
 
+/// A pass with a smaller P(receive) is not tried.
+const RESTART_PASS_P_MIN: f32 = 0.3;
+/// A pass whose P(receive) falls below this share of its first value is given up.
+const KEPT_PASS_P_SHARE: f32 = 0.5;
+/// A planned pass does not leave with a smaller P(receive): of 137 that left with more 85 % arrived (62 of 69
+/// against ours, 54 of 68 against the zone, seed 100), of 59 that left with less than 0.5, 37 %.
+const PLANNED_PASS_P_MIN: f32 = 0.6;
+/// This near to x_p a passer waits for its receiver, m: the 0.04 m between the robot and the ball, and its
+/// position error.
+const WAITING_WITHIN_M: f32 = 0.09;
+/// Looks at x* this exactly, rad: the robot itself corrects the remaining angle before it kicks.
+const AIMED_WITHIN_RAD: f32 = 0.15;
+
 /// A pass being coordinated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ahead {
@@ -159,16 +172,3 @@ fn times(
         passer.position.distance(at) < WAITING_WITHIN_M && (passer.heading - facing).abs() < AIMED_WITHIN_RAD;
     Times { at_ball: waits, passer: if waits { 0.0 } else { times.passer }, ..times }
 }
-
-/// A pass with a smaller P(receive) is not tried.
-const RESTART_PASS_P_MIN: f32 = 0.3;
-/// A pass whose P(receive) falls below this share of its first value is given up.
-const KEPT_PASS_P_SHARE: f32 = 0.5;
-/// A planned pass does not leave with a smaller P(receive): of 137 that left with more 85 % arrived (62 of 69
-/// against ours, 54 of 68 against the zone, seed 100), of 59 that left with less than 0.5, 37 %.
-const PLANNED_PASS_P_MIN: f32 = 0.6;
-/// This near to x_p a passer waits for its receiver, m: the 0.04 m between the robot and the ball, and its
-/// position error.
-const WAITING_WITHIN_M: f32 = 0.09;
-/// Looks at x* this exactly, rad: the robot itself corrects the remaining angle before it kicks.
-const AIMED_WITHIN_RAD: f32 = 0.15;

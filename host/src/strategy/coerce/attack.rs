@@ -10,6 +10,12 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 use super::super::view::{View, ViewRobot};
 use super::grid::{CELLS, Cell};
 
+/// Places tried around the best cell's middle: the paper takes the cell, this refines it
+/// (docs/papers.md D18).
+pub const SAMPLES: u32 = 24;
+/// Their standard deviation, as a share of the cell's side: nearly all of them lie in the cell.
+const SAMPLE_SIGMA_SHARE: f32 = 0.25;
+
 /// Worth of a pass to a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worth {
@@ -155,9 +161,3 @@ fn gaussian(random: &mut Xoshiro128PlusPlus) -> Vector<Attack> {
     let turn = (random.next_u32() >> 8) as f32 * (math::TAU / 16_777_216.0);
     Vector::polar(math::sqrt(-2.0 * math::ln(share)), Angle::new(turn))
 }
-
-/// Places tried around the best cell's middle: the paper takes the cell, this refines it
-/// (docs/papers.md D18).
-pub const SAMPLES: u32 = 24;
-/// Their standard deviation, as a share of the cell's side: nearly all of them lie in the cell.
-const SAMPLE_SIGMA_SHARE: f32 = 0.25;

@@ -17,6 +17,9 @@ use super::detect::Detected;
 use super::grid::{CELLS, Cell};
 use super::{CoerceSettings, tactics};
 
+/// Likelihoods are compared in hundredths.
+const LIKELIHOOD_STEPS: f32 = 100.0;
+
 /// One robot of ours, the opponent that it draws, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coercer {
@@ -178,6 +181,3 @@ fn may_go(
     let shot = Segment::new(attack.at, attack.worth.aim).distance_to(at);
     !areas && pass.min(shot) >= settings.off_ways && at.distance(from) >= settings.off_ball
 }
-
-/// Likelihoods are compared in hundredths.
-const LIKELIHOOD_STEPS: f32 = 100.0;

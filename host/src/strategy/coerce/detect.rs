@@ -7,6 +7,13 @@ use protocol::{Instant, RobotId};
 use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::tactics::{CoerceSituation, Likelihoods, Models, Tactic, detected};
 
+/// Snapshots count by e^(−age/this), s (D17: the last half second).
+const MEMORY_S: f32 = 0.5;
+/// After a gap of this length all estimates restart, s.
+const RESTART_AFTER_S: f32 = 2.0;
+/// A mark of at least this likelihood updates the distance.
+const MARKING_P_MIN: f32 = 0.5;
+
 /// State of an opponent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detected {
@@ -112,13 +119,6 @@ impl Detector {
         }
     }
 }
-
-/// Snapshots count by e^(−age/this), s (D17: the last half second).
-const MEMORY_S: f32 = 0.5;
-/// After a gap of this length all estimates restart, s.
-const RESTART_AFTER_S: f32 = 2.0;
-/// A mark of at least this likelihood updates the distance.
-const MARKING_P_MIN: f32 = 0.5;
 
 #[cfg(test)]
 mod tests {

@@ -18,6 +18,23 @@ use super::support::{self, Target};
 use super::view::{ROBOTS_MAX, View, ViewBall};
 use super::{Orders, defence, restart, roles};
 
+/// Most places of a style: field players of a team of eleven.
+const PLACES_MAX: usize = 10;
+/// A ball slower than this counts as stopped, m/s.
+const LYING_SPEED_MAX_M_S: f32 = 0.25;
+/// A target is kept for this long, unless the ball moves: to move around it, aim and kick.
+const AIM_KEPT: Duration = Duration::millis(1500);
+/// Distance the ball moves from which a new target is chosen, m.
+const AIM_MOVED_M: f32 = 0.3;
+/// A supporting robot keeps this far from the ball, m: two bodies and room to turn with it.
+const OFF_TEAMMATES_BALL_M: f32 = 0.5;
+/// No robot is sent nearer to a line than this, m.
+const INSIDE_LINES_M: f32 = 0.15;
+/// Centres keep this far off their area, m: the rules' 0.2 m at restarts, a body and the control error.
+const OFF_THEIR_AREA_M: f32 = 0.35;
+/// Steps out of an area, m.
+const AREA_STEP_M: f32 = 0.02;
+
 /// Team whose open play a side plays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -244,23 +261,6 @@ fn off_areas(view: &View, at: Point<Attack>) -> Point<Attack> {
     }
     at
 }
-
-/// Most places of a style: field players of a team of eleven.
-const PLACES_MAX: usize = 10;
-/// A ball slower than this counts as stopped, m/s.
-const LYING_SPEED_MAX_M_S: f32 = 0.25;
-/// A target is kept for this long, unless the ball moves: to move around it, aim and kick.
-const AIM_KEPT: Duration = Duration::millis(1500);
-/// Distance the ball moves from which a new target is chosen, m.
-const AIM_MOVED_M: f32 = 0.3;
-/// A supporting robot keeps this far from the ball, m: two bodies and room to turn with it.
-const OFF_TEAMMATES_BALL_M: f32 = 0.5;
-/// No robot is sent nearer to a line than this, m.
-const INSIDE_LINES_M: f32 = 0.15;
-/// Centres keep this far off their area, m: the rules' 0.2 m at restarts, a body and the control error.
-const OFF_THEIR_AREA_M: f32 = 0.35;
-/// Steps out of an area, m.
-const AREA_STEP_M: f32 = 0.02;
 
 #[cfg(test)]
 mod tests;

@@ -18,6 +18,15 @@ use super::kicks::{FlatKick, Kicks, PassKick};
 use super::open::GoalOpening;
 use super::reach::Mover;
 
+/// m; nearer, directions are undefined.
+const SAME_PLACE_WITHIN_M: f32 = 1e-3;
+/// From places farther off the goal line than this most shots are slower than a keeper, m: 0.5 s at 6.24 m/s.
+const KEEPER_MATTERS_BEYOND_M: f32 = 2.8;
+/// Nine factors in another order differ by less than 10⁻⁶.
+const ROUNDING_FACTOR: f32 = 1.0 + 1e-5;
+/// A chip that ends in a goal less often than this is not considered: one in two hundred.
+const CHIP_GOAL_P_MIN: f32 = 0.005;
+
 /// Probabilities of a pass to a place, with their factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rating {
@@ -388,15 +397,6 @@ fn enough(floor: f32, others: f32, c: &PassConstants) -> f32 {
         -SAFE
     }
 }
-
-/// m; nearer, directions are undefined.
-const SAME_PLACE_WITHIN_M: f32 = 1e-3;
-/// From places farther off the goal line than this most shots are slower than a keeper, m: 0.5 s at 6.24 m/s.
-const KEEPER_MATTERS_BEYOND_M: f32 = 2.8;
-/// Nine factors in another order differ by less than 10⁻⁶.
-const ROUNDING_FACTOR: f32 = 1.0 + 1e-5;
-/// A chip that ends in a goal less often than this is not considered: one in two hundred.
-const CHIP_GOAL_P_MIN: f32 = 0.005;
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -18,6 +18,11 @@ use super::ThreatSettings;
 use super::angle::{Opening, distance_for, half_shadow, widest};
 use super::edge::Edge;
 
+/// Rounds after which a place that depends on its own distance moves by less than a millimetre.
+const ROUNDS: usize = 4;
+/// Least slope of a ray towards our goal line: below, it counts as parallel to the line.
+const SLOPE_MIN: f32 = 1e-3;
+
 /// The three placements of the paper, by the bodies needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Case {
@@ -268,11 +273,6 @@ pub(super) fn beside(edge: &Edge, along: f32, towards: f32, settings: &ThreatSet
     }
     edge.point(along + towards * off)
 }
-
-/// Rounds after which a place that depends on its own distance moves by less than a millimetre.
-const ROUNDS: usize = 4;
-/// Least slope of a ray towards our goal line: below, it counts as parallel to the line.
-const SLOPE_MIN: f32 = 1e-3;
 
 #[cfg(test)]
 mod tests;

@@ -14,6 +14,13 @@ use super::edge::Edge;
 use super::receiving::{Because, FirstLevel};
 use super::{Memory, ThreatSettings, legal};
 
+/// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
+const HAS_BALL_WITHIN_M: f32 = 0.2;
+/// Passes arrive with this speed, m/s, at which a receiver can shoot at once.
+const PASS_ARRIVAL_M_S: f32 = 2.5;
+/// Fastest shot, m/s: the rules' 6.5 less a kicker's error.
+const SHOT_SPEED_M_S: f32 = 6.2;
+
 /// An opponent as a second-level threat, with its two positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Danger {
@@ -181,13 +188,6 @@ impl Position {
             .then(self.danger.opponent.cmp(&other.danger.opponent))
     }
 }
-
-/// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
-const HAS_BALL_WITHIN_M: f32 = 0.2;
-/// Passes arrive with this speed, m/s, at which a receiver can shoot at once.
-const PASS_ARRIVAL_M_S: f32 = 2.5;
-/// Fastest shot, m/s: the rules' 6.5 less a kicker's error.
-const SHOT_SPEED_M_S: f32 = 6.2;
 
 #[cfg(test)]
 mod tests {

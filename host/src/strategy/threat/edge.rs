@@ -8,6 +8,11 @@
 use geometry::{Attack, Point, Vector, math};
 use rules::{AreaForm, FieldSpec};
 
+/// A distance beyond any field, m.
+const BEYOND_FIELD_M: f32 = 32.0;
+/// 32 m halved this often: down to 1 µm.
+const HALVINGS: u32 = 25;
+
 /// The edge of our area, from our goal line at −y around to our goal line at +y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
@@ -107,11 +112,6 @@ impl Edge {
         (place.x() - self.goal.x() - self.ahead, place.y().abs() - self.beside)
     }
 }
-
-/// A distance beyond any field, m.
-const BEYOND_FIELD_M: f32 = 32.0;
-/// 32 m halved this often: down to 1 µm.
-const HALVINGS: u32 = 25;
 
 #[cfg(test)]
 mod tests {

@@ -13,6 +13,31 @@ use super::super::robots::seconds;
 use super::super::seen::{BallSeen, Captured};
 use crate::world::BallModels;
 
+/// White acceleration of a rolling ball, m²/s³: `steady` is a field surface that decelerates it 0.3 m/s² more
+/// or less than configured; `changing` is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
+const FREEDOM: Freedom = Freedom { steady: 0.02, changing: 8.0 };
+/// A detection is an outlier when its distance squared is more variances than this ...
+const OUTLIER_VARIANCES_MIN: f32 = 20.0;
+/// An outlier is farther than this off, m: noise between cameras is no turn.
+const OUTLIER_DISTANCE_MIN_M: f32 = 0.012;
+/// Standard deviation of a new ball's speed, m/s.
+const SPEED_SIGMA_M_S: f32 = 2.0;
+/// Uncertainty of a turned ball's speed besides the noise of two detections, m/s.
+const TURN_SIGMA_M_S: f32 = 0.3;
+/// Fastest ball, m/s: robots are allowed 6.5, kickers without a limit give 10 or so.
+const SPEED_MAX_M_S: f32 = 15.0;
+/// Largest distance of a detection from its prediction, m, and its growth for every second unseen (m/s), up
+/// to a time (s).
+const GATE_M: f32 = 0.1;
+const GATE_GROWTH_M_S: f32 = 10.0;
+const GATE_TIME_MAX_S: f32 = 0.15;
+/// Detections nearer to each other are of one tick, µs.
+const TICK_US: Captured = 5_000;
+/// Camera frames after which confidence is full.
+const FRAMES_FULL: u16 = 8;
+/// Weight of the newest detection in the quality.
+const QUALITY_SHARE: f32 = 0.1;
+
 /// A blob and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Glimpse {
@@ -157,28 +182,3 @@ impl Track {
         (freshness * often * self.quality).clamp(0.0, 1.0)
     }
 }
-
-/// White acceleration of a rolling ball, m²/s³: `steady` is a field surface that decelerates it 0.3 m/s² more
-/// or less than configured; `changing` is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
-const FREEDOM: Freedom = Freedom { steady: 0.02, changing: 8.0 };
-/// A detection is an outlier when its distance squared is more variances than this ...
-const OUTLIER_VARIANCES_MIN: f32 = 20.0;
-/// An outlier is farther than this off, m: noise between cameras is no turn.
-const OUTLIER_DISTANCE_MIN_M: f32 = 0.012;
-/// Standard deviation of a new ball's speed, m/s.
-const SPEED_SIGMA_M_S: f32 = 2.0;
-/// Uncertainty of a turned ball's speed besides the noise of two detections, m/s.
-const TURN_SIGMA_M_S: f32 = 0.3;
-/// Fastest ball, m/s: robots are allowed 6.5, kickers without a limit give 10 or so.
-const SPEED_MAX_M_S: f32 = 15.0;
-/// Largest distance of a detection from its prediction, m, and its growth for every second unseen (m/s), up
-/// to a time (s).
-const GATE_M: f32 = 0.1;
-const GATE_GROWTH_M_S: f32 = 10.0;
-const GATE_TIME_MAX_S: f32 = 0.15;
-/// Detections nearer to each other are of one tick, µs.
-const TICK_US: Captured = 5_000;
-/// Camera frames after which confidence is full.
-const FRAMES_FULL: u16 = 8;
-/// Weight of the newest detection in the quality.
-const QUALITY_SHARE: f32 = 0.1;
