@@ -38,15 +38,14 @@ impl Host {
             rule_role,
             directive: self.calibrated(to, directive),
         };
-        match &self.drill {
-            Some(drill) => {
-                drill.iter().map(|(to, role, directive)| command(*to, *role, directive.clone())).collect()
-            }
-            None => {
-                let orders = self.orders.iter();
-                orders.map(|o| command(o.robot, o.role.rule_role(), o.task.directive(flip))).collect()
-            }
+        if let Some(drill) = &self.drill {
+            return drill
+                .iter()
+                .map(|(to, role, directive)| command(*to, *role, directive.clone()))
+                .collect();
         }
+        let orders = self.orders.iter();
+        orders.map(|order| command(order.robot, order.role.rule_role(), order.task.directive(flip))).collect()
     }
 
     /// Orders of a strategy in another program are sent at once.

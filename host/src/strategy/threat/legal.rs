@@ -19,7 +19,7 @@ const AREA_MARGIN_STOPPED_M: f32 = 0.038;
 /// needs a body beyond that.
 const PLACER_ROOM_M: f32 = 0.5;
 /// Least distance of two places, m: two bodies and the gap between two defenders of one line (`defence`,
-/// `SHOULDER`).
+/// `BESIDE_LINE_M`).
 const PLACES_APART_MIN_M: f32 = 0.2;
 /// Spacing of the rings, m.
 const RING_SPACING_M: f32 = 0.1;
