@@ -50,6 +50,15 @@ use crate::strategy::Tactics;
 pub use change::ParameterChange;
 pub(crate) use parameters::KICK_RANGE;
 
+/// Longest part of an error in a file of settings that is printed, characters.
+const MESSAGE_CHARS_MAX: usize = 300;
+/// Longest part of its line that is printed, characters.
+const LINE_CHARS_MAX: usize = 80;
+const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
+/// Default baud rate, bits a second: it carries 100 snapshots a second for a team of six (some 50 kB/s) and
+/// 75 for one of eleven (80).
+const BAUD_DEFAULT: u32 = 1_000_000;
+
 /// A team's settings: from a file or flags; every field is optional.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -89,15 +98,15 @@ pub struct TeamSettings {
     /// Deviations of the robots from what is ordered.
     #[serde(default)]
     pub calibration: Vec<Calibration>,
-    /// How the ball moves on this field.
+    /// Motion of the ball on this field.
     #[serde(default)]
     pub ball: BallSettings,
-    /// How fast our robots may drive.
+    /// Limits of our robots' motion.
     #[serde(default)]
     pub limits: DriveSettings,
 }
 
-/// How the ball moves on the field.
+/// Motion of the ball on the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BallSettings {
@@ -105,7 +114,7 @@ pub struct BallSettings {
     pub roll: Option<f32>,
 }
 
-/// How fast our robots may drive; their own limits hold where they are stricter.
+/// Limits of our robots' motion; their own limits hold where they are stricter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DriveSettings {
@@ -115,7 +124,7 @@ pub struct DriveSettings {
     pub acceleration: Option<f32>,
 }
 
-/// How one robot deviates from what is ordered.
+/// Deviations of one robot from what is ordered.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
@@ -136,7 +145,7 @@ fn one() -> f32 {
 /// A team's settings, complete and checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TeamConfig {
-    /// As the game controller knows it.
+    /// Name of the team as the game controller knows it.
     pub name: String,
     /// The colour our robots play with.
     pub colour: Colour,
@@ -146,7 +155,7 @@ pub struct TeamConfig {
     pub keeper: RobotId,
     /// Address of the interface on which multicast is received; `None`: every interface that supports it.
     pub interface: Option<IpAddr>,
-    /// Where the robots are.
+    /// Link to the robots.
     pub robots: RobotLink,
     /// The file of the team's key.
     pub key_file: Option<PathBuf>,
@@ -158,7 +167,7 @@ pub struct TeamConfig {
     pub referee: SocketAddr,
     /// The only referee that is obeyed; none: the strictest of all.
     pub referee_source: Option<SourcePin>,
-    /// What robots do when the referee falls silent.
+    /// Behaviour of our robots when the referee falls silent.
     pub referee_silence: OnSilence,
     /// Address to which tracker packets are sent.
     pub tracker: SocketAddr,
@@ -170,7 +179,7 @@ pub struct TeamConfig {
     pub kick: [f32; RobotId::COUNT],
     /// Deceleration of a rolling ball, m/s²; none: from vision.
     pub roll: Option<f32>,
-    /// How fast our robots may drive.
+    /// Limits of our robots' motion.
     pub limits: DriveSettings,
     /// The tactics of the program's coach.
     pub tactics: Tactics,
@@ -198,7 +207,7 @@ pub enum RobotLink {
 pub struct ConfigError {
     /// The key or flag.
     pub key: String,
-    /// What is wrong, and what to write.
+    /// Text on what is wrong, and what to write.
     pub description: String,
 }
 
@@ -214,11 +223,6 @@ fn place_of(text: &str, broken: &toml::de::Error) -> String {
     let line = text.lines().nth(number).unwrap_or_default();
     format!("line {}: {what}: `{}`", number + 1, excerpt(line.trim(), LINE_CHARS_MAX))
 }
-
-/// Longest part of an error in a file of settings that is printed, characters.
-const MESSAGE_CHARS_MAX: usize = 300;
-/// Longest part of its line that is printed, characters.
-const LINE_CHARS_MAX: usize = 80;
 
 impl TeamSettings {
     /// Reads `team.toml`; unknown keys are errors.
@@ -296,8 +300,6 @@ impl TeamSettings {
     }
 }
 
-const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
-
 fn colour(label: &str) -> Result<Colour, ConfigError> {
     [Colour::Blue, Colour::Yellow]
         .into_iter()
@@ -356,10 +358,6 @@ impl RobotLink {
         if device.is_empty() { Err(wrong()) } else { Ok(Self::Serial { device: device.to_owned(), baud }) }
     }
 }
-
-/// Default baud rate, bits a second: it carries 100 snapshots a second for a team of six (some 50 kB/s) and
-/// 75 for one of eleven (80).
-const BAUD_DEFAULT: u32 = 1_000_000;
 
 #[cfg(test)]
 mod tests {

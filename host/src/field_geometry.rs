@@ -37,7 +37,7 @@ pub struct VisionGeometry {
     robot_radius: Option<f32>,
 }
 
-/// What a geometry packet changed.
+/// Changes by a geometry packet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GeometryChange {
     /// The field differs from before, or known for the first time.
@@ -66,7 +66,7 @@ impl VisionGeometry {
         self.field.as_ref().map(|(field, _)| field)
     }
 
-    /// Where the defence area's size is from.
+    /// Source of the defence area's size.
     pub fn area_source(&self) -> Option<AreaSource> {
         self.field.map(|(_, source)| source)
     }

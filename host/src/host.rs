@@ -44,6 +44,21 @@ use crate::world::{Ball, World};
 pub use input::{Input, InputVerdict, Undecodable};
 pub use settings::HostSettings;
 
+/// The limits used for a league that defines none.
+const LIMITS: Limits = match League::DivisionB.limits() {
+    Some(limits) => limits,
+    None => panic!("division B has limits"),
+};
+/// Minimum time between plans: four cameras that look at once give one plan, not four; half a period of 100
+/// Hz.
+const PLAN_EVERY: Duration = Duration::millis(5);
+/// Relative change of the ball's deceleration from which tables are computed again.
+const ROLL_CHANGE_MIN: f32 = 0.05;
+/// A ball not seen for this time counts as hidden: the cameras' delay and a few frames.
+const BALL_VISIBLE_WITHIN: Duration = Duration::millis(120);
+/// The tracker's confidence in a ball that it has followed for a tenth of a second.
+const BALL_CONFIDENCE_MIN: f32 = 0.6;
+
 /// Orders that replace the coach's: robot, its role, and its directive.
 pub type Drill = heapless::Vec<(RobotId, RuleRole, Directive), { RobotId::COUNT }>;
 
@@ -350,7 +365,7 @@ impl Host {
         }
     }
 
-    /// What goals are worth by score and time left.
+    /// Worths of goals by score and time left.
     fn stakes(&self) -> Stakes {
         let (us, game) = (self.settings.us, self.listener.game());
         let score = |colour| i32::try_from(game.team(colour).score).unwrap_or(i32::MAX);
@@ -422,21 +437,6 @@ fn visible_place(now: Instant, ball: Option<Ball>) -> Option<Point<geometry::Fie
     ball.filter(|ball| now.since(ball.seen) < BALL_VISIBLE_WITHIN && ball.confidence > BALL_CONFIDENCE_MIN)
         .map(|ball| ball.position)
 }
-
-/// The limits used for a league that defines none.
-const LIMITS: Limits = match League::DivisionB.limits() {
-    Some(limits) => limits,
-    None => panic!("division B has limits"),
-};
-/// Minimum time between plans: four cameras that look at once give one plan, not four; half a period of 100
-/// Hz.
-const PLAN_EVERY: Duration = Duration::millis(5);
-/// Relative change of the ball's deceleration from which tables are computed again.
-const ROLL_CHANGE_MIN: f32 = 0.05;
-/// A ball not seen for this time counts as hidden: the cameras' delay and a few frames.
-const BALL_VISIBLE_WITHIN: Duration = Duration::millis(120);
-/// The tracker's confidence in a ball that it has followed for a tenth of a second.
-const BALL_CONFIDENCE_MIN: f32 = 0.6;
 
 #[cfg(test)]
 mod tests;

@@ -63,11 +63,11 @@ const SOURCES_MAX: usize = 8;
 /// halt in any case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OnSilence {
-    /// They halt after [`HALT_AFTER`], and play again after a STOP of [`GRACE`] when it is back.
+    /// Robots halt after [`HALT_AFTER`], and play again after a STOP of [`GRACE`] when it is back.
     #[default]
     Halt,
-    /// They continue by its last command: for test days on which the controller is started for a command and
-    /// ended.
+    /// Robots continue by the last command: for test days on which the controller is started for a command
+    /// and ended.
     GoOn,
 }
 
@@ -75,7 +75,7 @@ impl OnSilence {
     /// Both, with their names in `team.toml` and on the command line.
     pub const ALL: [(&'static str, Self); 2] = [("halt", Self::Halt), ("go-on", Self::GoOn)];
 
-    /// Its name in `team.toml` and on the command line.
+    /// Name in `team.toml` and on the command line.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Halt => "halt",
@@ -105,10 +105,10 @@ pub struct Listener {
     started: Instant,
 }
 
-/// How long the referee has sent nothing.
+/// Silence of the referee.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Silence {
-    /// Nothing was ever received, for this time.
+    /// No packet was ever received, for this time.
     Never(Duration),
     /// The newest packet was received this long ago: normal.
     Received(Duration),

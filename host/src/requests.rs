@@ -13,6 +13,14 @@ use crate::referee::team_port::TeamPortRequest;
 use crate::strategy::View;
 use crate::strategy::view::nearest;
 
+/// A keeper counts as missing after this time: vision loses a robot for less, and the radio link is restored
+/// within half a second.
+const KEEPER_MISSING_AFTER: Duration = Duration::millis(2000);
+/// A keeper is requested again after this time, if the requested one is not named.
+const REQUEST_EVERY: Duration = Duration::millis(3000);
+/// A robot that is leaving needs less: division A's diagonal at the 1.5 m/s of a stop takes 10 s.
+const LEAVING_TIME_MAX: Duration = Duration::millis(12_000);
+
 /// The requests sent, and since when their causes persist.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Requests {
@@ -60,8 +68,8 @@ impl Requests {
         }
     }
 
-    /// A surplus robot that cannot leave by itself blocks the game: after [`LEAVING_TIME_MAX`] in a stop our robot
-    /// handler is to take it out.
+    /// A surplus robot that cannot leave by itself blocks the game: after [`LEAVING_TIME_MAX`] in a stop our
+    /// robot handler is to take it out.
     ///
     /// Requested once until there is no surplus robot any more, and only while it is free: where no robot
     /// handler acts, every further request would halt the game again, and after the fifth each is a foul and
@@ -87,8 +95,8 @@ impl Requests {
         }
     }
 
-    /// They have a surplus robot: we continue while that is to our advantage (our penalty, or the ball in
-    /// their half); the controller stops the game for it otherwise.
+    /// Answers an advantage, as the opponents have a surplus robot: we continue while that is to our
+    /// advantage (our penalty, or the ball in their half); the controller stops the game for it otherwise.
     fn advantage(&mut self, view: &View) {
         let theirs = view.theirs.iter().filter(|robot| view.counts_for_them(robot.position)).count();
         let attack = match view.phase {
@@ -103,14 +111,6 @@ impl Requests {
         }
     }
 }
-
-/// A keeper counts as missing after this time: vision loses a robot for less, and the radio link is restored
-/// within half a second.
-const KEEPER_MISSING_AFTER: Duration = Duration::millis(2000);
-/// A keeper is requested again after this time, if the requested one is not named.
-const REQUEST_EVERY: Duration = Duration::millis(3000);
-/// A robot that is leaving needs less: division A's diagonal at the 1.5 m/s of a stop takes 10 s.
-const LEAVING_TIME_MAX: Duration = Duration::millis(12_000);
 
 #[cfg(test)]
 mod tests;

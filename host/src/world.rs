@@ -8,6 +8,13 @@ use motion::trajectory::Motion;
 use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 
+/// Longest time for which a robot is extrapolated straight on, s: at 3 m/s² it changes its speed by 0.75 m/s
+/// in that time, and no delay that is worth compensating is longer (capture to motion is 45–65 ms in the
+/// league).
+pub const STRAIGHT_MAX: f32 = 0.25;
+/// Acceleration of free fall, m/s².
+pub(crate) const GRAVITY_M_S2: f32 = 9.81;
+
 /// The field at one moment.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct World {
@@ -25,14 +32,14 @@ pub struct World {
 pub struct BallModels {
     /// Model of motion on the ground.
     pub ground: BallModel,
-    /// In the air and at bounces.
+    /// Model of the ball in the air and at bounces.
     pub chip: ChipModel,
 }
 
 /// State of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Its place, or the point below it while it flies.
+    /// Place of the ball, or the point below it while it flies.
     pub position: Point<Field>,
     /// Height above its place on the field surface, m.
     pub height: f32,
@@ -40,7 +47,7 @@ pub struct Ball {
     pub velocity: Vector<Field>,
     /// Velocity upwards, m/s; negative while it falls.
     pub climb: f32,
-    /// It rolls below this speed and slides above it, m/s; infinite where its kick was not seen.
+    /// Speed below which the ball rolls and above which it slides, m/s; infinite where its kick was not seen.
     pub rolls_below: f32,
     /// Whether its last kick has touched the ground once: later bounces lose less.
     pub bounced: bool,
@@ -59,9 +66,9 @@ pub struct Kick {
     pub by: Option<Who>,
     /// The place where it left.
     pub from: Point<Field>,
-    /// Its velocity along the ground, right after the kick, m/s.
+    /// Velocity along the ground, right after the kick, m/s.
     pub velocity: Vector<Field>,
-    /// Its velocity upwards, m/s; 0 for a flat kick.
+    /// Velocity upwards, m/s; 0 for a flat kick.
     pub climb: f32,
     /// Time of the kick.
     pub at: Instant,
@@ -77,13 +84,13 @@ impl Kick {
 /// State of a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Robot {
-    /// Its team and number.
+    /// Team and number.
     pub who: Who,
-    /// Its place and heading.
+    /// Place and heading.
     pub pose: Pose<Field>,
     /// Velocity of its centre, m/s, field frame.
     pub velocity: Vector<Field>,
-    /// Its angular velocity, rad/s, counter-clockwise.
+    /// Angular velocity, rad/s, counter-clockwise.
     pub angular: f32,
     /// Confidence, 0 (about to be dropped) to 1 (seen just now, and often).
     pub confidence: f32,
@@ -102,7 +109,7 @@ impl World {
         self.robots[index(robot.who.colour)][robot.who.id.index()] = Some(robot);
     }
 
-    /// That robot, if it is on the field.
+    /// The robot, if it is on the field.
     pub fn robot(&self, who: Who) -> Option<&Robot> {
         self.robots[index(who.colour)][who.id.index()].as_ref()
     }
@@ -167,7 +174,7 @@ impl Ball {
         }
     }
 
-    /// Its path along the ground from here; for a ball in the air, from here as if it were down.
+    /// Path of the ball along the ground from here; for a ball in the air, from here as if it were down.
     pub fn path(&self, models: &BallModels) -> BallPath<Field> {
         models.ground.moving(self.position, self.velocity, self.rolls_below)
     }
@@ -198,7 +205,7 @@ impl Ball {
         }
     }
 
-    /// Its stop position if no robot intercepts it.
+    /// Stop position of the ball if no robot intercepts it.
     pub fn rest(&self, models: &BallModels) -> Point<Field> {
         if self.is_down() { self.path(models).rest() } else { self.flight(models).0.rest() }
     }
@@ -247,13 +254,6 @@ impl Robot {
         Self { pose, ..*self }
     }
 }
-
-/// Longest time for which a robot is extrapolated straight on, s: at 3 m/s² it changes its speed by 0.75 m/s
-/// in that time, and no delay that is worth compensating is longer (capture to motion is 45–65 ms in the
-/// league).
-pub const STRAIGHT_MAX: f32 = 0.25;
-/// Acceleration of free fall, m/s².
-pub(crate) const GRAVITY_M_S2: f32 = 9.81;
 
 /// The index of a team in an array of two.
 pub(crate) const fn index(colour: Colour) -> usize {

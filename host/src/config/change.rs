@@ -11,6 +11,9 @@ use super::parameters::{ACCELERATION, KICK, PARAMETERS, Parameter, SPEED};
 use super::{ConfigError, DriveSettings, TeamConfig, TeamSettings, error};
 use crate::HostSettings;
 
+/// Longest part of an unknown key that is told, characters.
+const KEY_CHARS_MAX: usize = 40;
+
 /// A new value for a parameter, as the page sends it and a trace keeps it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -31,14 +34,14 @@ impl ParameterChange {
         serde_json::from_slice(json).map_err(|broken| error("parameter", broken.to_string()))
     }
 
-    /// As JSON, for a trace.
+    /// JSON of the change, for a trace.
     pub fn to_json(&self) -> String {
         // Strings and numbers: JSON can represent all of it but a number that is none, which reads as no
         // value.
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Its parameter, if it names one and a robot where it must.
+    /// The parameter, if the change names one and a robot where it must.
     fn parameter(&self) -> Result<&'static Parameter, ConfigError> {
         let Some(parameter) = PARAMETERS.iter().find(|parameter| parameter.key == self.key) else {
             return Err(error(
@@ -119,9 +122,6 @@ impl ParameterChange {
         Ok(())
     }
 }
-
-/// Longest part of an unknown key that is told, characters.
-const KEY_CHARS_MAX: usize = 40;
 
 impl TeamConfig {
     /// This configuration as it is with `change`, checked as a file is. Refused are parameters that a host

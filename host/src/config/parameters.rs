@@ -16,23 +16,23 @@ use super::{ConfigError, TeamConfig, TeamSettings, error};
 /// One parameter of a team.
 #[derive(Clone, Debug)]
 pub struct Parameter {
-    /// Its key in `team.toml`, after its table and a dot where it is in one: `keeper`, `ball.roll`.
+    /// Key in `team.toml`, after its table and a dot where it is in one: `keeper`, `ball.roll`.
     pub key: &'static str,
-    /// Its unit; empty where it has none.
+    /// Unit of the value; empty where it has none.
     pub unit: &'static str,
     /// Least and greatest value, in `unit`; none: not a number, or any that its type takes.
     pub range: Option<RangeInclusive<f32>>,
-    /// What it means, and which words it takes.
+    /// Meaning of the value, and the words it takes.
     pub meaning: &'static str,
-    /// What holds where it is left out, and an example as it stands in the file; none: it always has a value.
+    /// Default where it is left out, and an example as it stands in the file; none: it always has a value.
     pub left_out: Option<(&'static str, &'static str)>,
     /// Whether it can change while a host runs ([`TeamConfig::changed`]).
     pub live: bool,
-    /// Its value in a configuration.
+    /// Place of its value in a configuration.
     value: Holds,
 }
 
-/// Where a configuration holds a parameter; `None` is one that is not set.
+/// Place in a configuration that holds a parameter; `None` is one that is not set.
 #[derive(Clone, Copy, Debug)]
 enum Holds {
     /// One value for the team.
@@ -59,9 +59,9 @@ pub struct ParameterValue {
     pub live: bool,
     /// Whether each robot has its own.
     pub each_robot: bool,
-    /// Its value; none: not set.
+    /// Present value; none: not set.
     pub value: Option<Value>,
-    /// Its value in an empty file; none: not set.
+    /// Value in an empty file; none: not set.
     pub default: Option<Value>,
 }
 
@@ -78,7 +78,7 @@ impl Parameter {
         self.key.split_once('.').map(|(table, _)| table)
     }
 
-    /// Its key within its table.
+    /// Key within its table.
     pub fn name(&self) -> &'static str {
         self.key.split_once('.').map_or(self.key, |(_, name)| name)
     }
@@ -88,7 +88,7 @@ impl Parameter {
         matches!(self.value, Holds::EachRobot(_))
     }
 
-    /// Its value for the team; none: not set, or each robot has its own.
+    /// Value for the team; none: not set, or each robot has its own.
     pub(super) fn once(&self, config: &TeamConfig) -> Option<Value> {
         match self.value {
             Holds::Once(value) => value(config),
@@ -116,7 +116,7 @@ impl Parameter {
 }
 
 impl fmt::Display for Parameter {
-    /// Its meaning with range and unit.
+    /// Meaning with range and unit.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.meaning)?;
         if let Some(range) = &self.range {
@@ -187,7 +187,7 @@ const fn optional(
     Parameter { left_out: Some(left_out), ..usual(key, meaning, value) }
 }
 
-/// How a rolling ball slows down; the range is that of [`crate::learned`].
+/// Deceleration of a rolling ball; the range is that of [`crate::learned`].
 pub(super) const ROLL: Parameter = Parameter {
     key: "ball.roll",
     unit: "m/s²",
@@ -214,7 +214,7 @@ pub(super) const KICK: Parameter = Parameter {
     }),
 };
 
-/// How fast robots drive; the least is what a robot accepts
+/// Greatest speed of our robots; the least is what a robot accepts
 /// ([`DriveLimits::SPEED_MIN`](protocol::host::DriveLimits)), the greatest beyond every robot of the league.
 pub(super) const SPEED: Parameter = Parameter {
     key: "limits.speed",
@@ -226,7 +226,7 @@ pub(super) const SPEED: Parameter = Parameter {
     value: Holds::Once(|config| config.limits.speed.map(decimal)),
 };
 
-/// How hard robots accelerate; the bounds are those of [`SPEED`], likewise.
+/// Greatest acceleration of our robots; the bounds are those of [`SPEED`], likewise.
 pub(super) const ACCELERATION: Parameter = Parameter {
     key: "limits.acceleration",
     unit: "m/s²",

@@ -6,6 +6,12 @@ use std::fmt::{self, Write as _};
 use super::parameters::{KICK, PARAMETERS};
 use super::{RobotLink, TeamConfig};
 
+/// Comment at the head of a written `team.toml`.
+const HEADING: &str = "\
+# Settings of a team, for `onetwo control --config team.toml`; a flag of the same name overrules each.
+
+";
+
 impl TeamConfig {
     /// These settings as a `team.toml` that [`super::TeamSettings::from_toml`] reads; those that are not set
     /// are comments with an example.
@@ -46,12 +52,6 @@ impl fmt::Display for RobotLink {
         }
     }
 }
-
-/// Comment at the head of a written `team.toml`.
-const HEADING: &str = "\
-# Settings of a team, for `onetwo control --config team.toml`; a flag of the same name overrules each.
-
-";
 
 #[cfg(test)]
 mod tests {

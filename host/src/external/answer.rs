@@ -14,6 +14,10 @@ use super::form::{COORDINATE_MAX_M, Pair, StrategyOrder, StrategyTask, point};
 use crate::strategy::threat::{ThreatSettings, legal_for};
 use crate::strategy::{Order, OrderReason, Role, Task, View};
 
+/// Greatest speed of a kick that is ordered, m/s: robots kick no faster than the rules permit whatever is
+/// ordered.
+const KICK_SPEED_MAX_M_S: f32 = 10.0;
+
 /// One line of the strategy.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -31,7 +35,7 @@ pub struct StrategyAnswer {
 /// Why an answer is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AnswerError {
-    /// It is not the JSON of an answer.
+    /// A line that is not the JSON of an answer.
     #[error("no answer of the form {{\"orders\":[…]}}: {0}")]
     Json(String),
     /// An order is for a robot that is not among ours.
@@ -46,7 +50,7 @@ pub enum AnswerError {
         "the order of robot {0}: a number is not finite or beyond {COORDINATE_MAX_M} m or {KICK_SPEED_MAX_M_S} m/s"
     )]
     Number(u8),
-    /// There is too much to draw, or in places where it cannot be drawn.
+    /// More to draw than fits, or in places where it cannot be drawn.
     #[error(
         "more than {SHAPES_MAX} shapes or {VALUES_MAX} values, a text of more than {TEXT_MAX} bytes, or a number that \
          is not finite or beyond {COORDINATE_MAX_M} m"
@@ -139,7 +143,3 @@ pub(super) fn order(view: &View, robot: RobotId, task: Task) -> Order {
     };
     Order { robot, role, task, why: OrderReason::External }
 }
-
-/// Greatest speed of a kick that is ordered, m/s: robots kick no faster than the rules permit whatever is
-/// ordered.
-const KICK_SPEED_MAX_M_S: f32 = 10.0;

@@ -7,6 +7,13 @@ use serde::{Deserialize, Serialize};
 
 use super::form::{COORDINATE_MAX_M, Pair};
 
+/// Most shapes of an answer: the page draws them sixty times a second.
+pub(super) const SHAPES_MAX: usize = 64;
+/// Most values of an answer: each is a plot of its own.
+pub(super) const VALUES_MAX: usize = 16;
+/// Longest text of a shape and longest name of a value, bytes.
+pub(super) const TEXT_MAX: usize = 40;
+
 /// A shape on the field.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -23,21 +30,21 @@ pub enum StrategyShape {
     },
     /// A circle around a place of the attack frame.
     Circle {
-        /// Its centre.
+        /// Centre of the shape, m.
         at: Pair,
         /// Radius of the circle, m.
         radius: f32,
     },
     /// A short text at a place of the attack frame.
     Text {
-        /// Its centre.
+        /// Centre of the shape, m.
         at: Pair,
         /// At most 40 bytes.
         text: String,
     },
 }
 
-/// What a strategy shows.
+/// Shapes and values that a strategy shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StrategyDrawing {
     /// Shapes, in the order in which they are drawn.
@@ -67,10 +74,3 @@ impl StrategyDrawing {
             && self.values.iter().all(|(name, value)| name.len() <= TEXT_MAX && value.is_finite())
     }
 }
-
-/// Most shapes of an answer: the page draws them sixty times a second.
-pub(super) const SHAPES_MAX: usize = 64;
-/// Most values of an answer: each is a plot of its own.
-pub(super) const VALUES_MAX: usize = 16;
-/// Longest text of a shape and longest name of a value, bytes.
-pub(super) const TEXT_MAX: usize = 40;

@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 use crate::strategy::view::{ROBOTS_MAX, View, ViewBall, ViewRobot};
 use crate::strategy::{Order, OrderReason, Orders, Role, Task};
 
+/// Farthest coordinate of an order, m: beyond the largest field with its surroundings.
+pub(super) const COORDINATE_MAX_M: f32 = 20.0;
+
 /// A place or a velocity: x, y.
 pub type Pair = [f32; 2];
 
@@ -26,7 +29,7 @@ pub struct StrategyView {
     pub phase: StrategyPhase,
     /// The phase that will start next, if the referee sends it.
     pub next: Option<StrategyPhase>,
-    /// Where the ball is to be placed, while it is.
+    /// Place for the ball during a placement, m.
     pub placement: Option<Pair>,
     /// The ball, if its place is known.
     pub ball: Option<StrategyBall>,
@@ -43,7 +46,7 @@ pub struct StrategyView {
     /// Our robots that the rules bind, so that the coach's order stands: they have to leave the field, or may
     /// not touch the ball again.
     pub bound: Vec<u8>,
-    /// What our coach orders; a robot without an order of the strategy gets this one.
+    /// Orders of our coach; a robot without an order of the strategy gets this one.
     pub usual: Vec<StrategyOrder>,
 }
 
@@ -53,7 +56,7 @@ pub struct StrategyPhase {
     /// `halt`, `stop`, `run`, `timeout`, `ball-placement`, `prepare-kickoff`, `kickoff`, `prepare-penalty`,
     /// `penalty` or `free-kick`.
     pub name: String,
-    /// Whose it is; none of `halt`, `stop` and `run`.
+    /// Whether it is ours; none of `halt`, `stop` and `run`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ours: Option<bool>,
 }
@@ -61,11 +64,11 @@ pub struct StrategyPhase {
 /// The ball in the attack frame, SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StrategyBall {
-    /// Its place on the ground.
+    /// Place on the ground, m.
     pub at: Pair,
     /// Velocity along the ground.
     pub velocity: Pair,
-    /// Where it stops if no robot intercepts it.
+    /// Place where it stops if no robot intercepts it, m.
     pub rest: Pair,
     /// Height above the ground, m.
     pub height: f32,
@@ -76,7 +79,7 @@ pub struct StrategyBall {
 /// A robot in the attack frame, SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StrategyRobot {
-    /// Its number in its team.
+    /// Number in its team, 0 to 15.
     pub robot: u8,
     /// Place of its centre.
     pub at: Pair,
@@ -84,7 +87,7 @@ pub struct StrategyRobot {
     pub heading: f32,
     /// Velocity of its centre.
     pub velocity: Pair,
-    /// Its sensor detects the ball; of ours alone.
+    /// Whether its sensor detects the ball; of ours alone.
     #[serde(default)]
     pub ball_contact: bool,
 }
@@ -150,7 +153,7 @@ pub enum StrategyTask {
     },
     /// Pass to a teammate.
     Pass {
-        /// Where it will be received.
+        /// Place of the reception, m.
         at: Pair,
         /// Number of the teammate that receives it.
         receiver: u8,
@@ -333,6 +336,3 @@ impl StrategyOrder {
 pub(super) fn is_bound(order: &Order) -> bool {
     matches!(order.why, OrderReason::TooMany { .. }) || order.role == Role::DoubleTouchBlocked
 }
-
-/// Farthest coordinate of an order, m: beyond the largest field with its surroundings.
-pub(super) const COORDINATE_MAX_M: f32 = 20.0;

@@ -27,6 +27,9 @@ pub use link::{StrategyLink, StrategyStarter};
 
 use crate::strategy::{Order, OrderReason, Orders, Role, Task, View};
 
+/// An answer is followed for this long, s: robots of a program that has stopped stand within 0.1 s.
+pub const ANSWERS_WITHIN: Duration = Duration::millis(80);
+
 /// The host's end of it.
 #[derive(Clone, Debug)]
 pub(crate) struct External {
@@ -43,7 +46,7 @@ pub(crate) struct External {
 }
 
 impl External {
-    /// Without a view and an answer.
+    /// A strategy that has neither received a view nor answered.
     pub(crate) fn new(league: League) -> Self {
         Self {
             league,
@@ -96,7 +99,7 @@ impl External {
         self.line.take()
     }
 
-    /// What the newest answer shows on the page.
+    /// Shapes and values of the newest answer, for the page.
     pub(crate) fn drawing(&self) -> &StrategyDrawing {
         &self.drawing
     }
@@ -131,9 +134,6 @@ fn replaced(view: &View, order: &Order, tasks: Option<&[(RobotId, Task)]>) -> Or
         None => order.clone(),
     }
 }
-
-/// An answer is followed for this long, s: robots of a program that has stopped stand within 0.1 s.
-pub const ANSWERS_WITHIN: Duration = Duration::millis(80);
 
 #[cfg(test)]
 mod tests;

@@ -5,26 +5,6 @@ use ssl::vision::{FieldCircularArc, FieldLineSegment, FieldShapeType, GeometryFi
 
 use super::nearest_division;
 
-/// Where the defence area's size is from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AreaSource {
-    /// From the packet's own numbers.
-    Announced,
-    /// From the packet's penalty stretches.
-    Lines,
-    /// The packet has none: this division's, scaled down with the field where that is smaller. To be reported
-    /// to the operator.
-    Division(League),
-}
-
-/// Size of a defence area, m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Area {
-    pub(super) depth: f32,
-    pub(super) width: f32,
-    pub(super) form: AreaForm,
-}
-
 /// Both lines parallel to the goal line; the length of either is the area's width.
 const FRONTS: [(&str, FieldShapeType); 2] = [
     ("LeftPenaltyStretch", FieldShapeType::LeftPenaltyStretch),
@@ -44,6 +24,26 @@ const ARCS: [&str; 4] = [
     "RightFieldLeftPenaltyArc",
     "RightFieldRightPenaltyArc",
 ];
+
+/// Source of the defence area's size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AreaSource {
+    /// From the packet's own numbers.
+    Announced,
+    /// From the packet's penalty stretches.
+    Lines,
+    /// The packet has none: this division's, scaled down with the field where that is smaller. To be reported
+    /// to the operator.
+    Division(League),
+}
+
+/// Size of a defence area, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Area {
+    pub(super) depth: f32,
+    pub(super) width: f32,
+    pub(super) form: AreaForm,
+}
 
 /// The defence area of a field.
 pub(super) fn of(size: &GeometryFieldSize) -> (Area, AreaSource) {

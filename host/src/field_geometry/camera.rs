@@ -2,16 +2,21 @@
 
 use ssl::vision::GeometryCameraCalibration;
 
+/// No camera is mounted farther from the centre than this, m.
+const CAMERA_DISTANCE_MAX_M: f32 = 50.0;
+/// A quaternion whose squared length is off 1 by more is a dummy (simulators send four times 0.7: 1.96).
+const QUATERNION_TOLERANCE: f32 = 0.02;
+
 /// Position of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Its mounting position, m: along x, y, and height, field frame.
+    /// Mounting position, m: along x, y, and height, field frame.
     pub position: [f32; 3],
     /// Source of the position.
     pub source: CameraSource,
 }
 
-/// Where a camera's place is from.
+/// Source of a camera's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraSource {
     /// The packet contains it.
@@ -19,11 +24,6 @@ pub enum CameraSource {
     /// Computed from the calibration's rotation and translation.
     Calibration,
 }
-
-/// No camera is mounted farther from the centre than this, m.
-const CAMERA_DISTANCE_MAX_M: f32 = 50.0;
-/// A quaternion whose squared length is off 1 by more is a dummy (simulators send four times 0.7: 1.96).
-const QUATERNION_TOLERANCE: f32 = 0.02;
 
 impl Camera {
     /// From a calibration; `None` where it gives no place, or none above the ground.

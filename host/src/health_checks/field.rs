@@ -8,6 +8,12 @@ use rules::{Colour, FieldSpec, League, limits};
 use super::Lasting;
 use crate::Host;
 
+/// A robot not seen for this time is not counted: ten frames of 60 Hz, and fewer than its track lasts (1 s).
+const COUNTED_FOR: Duration = Duration::millis(170);
+/// Tolerance of a field's dimensions as a share of its size (an estimate; the rules allow 10 %, and the
+/// leagues' differ by a third).
+const DIMENSION_TOLERANCE: f32 = 0.1;
+
 /// More robots of a team than its league allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooManyRobots {
@@ -119,12 +125,6 @@ fn fits(announced: &FieldSpec, league: League) -> bool {
     let near = |announced: f32, own: f32| (announced - own).abs() <= own * DIMENSION_TOLERANCE;
     near(announced.length, field.length) && near(announced.width, field.width)
 }
-
-/// A robot not seen for this time is not counted: ten frames of 60 Hz, and fewer than its track lasts (1 s).
-const COUNTED_FOR: Duration = Duration::millis(170);
-/// Tolerance of a field's dimensions as a share of its size (an estimate; the rules allow 10 %, and the
-/// leagues' differ by a third).
-const DIMENSION_TOLERANCE: f32 = 0.1;
 
 #[cfg(test)]
 mod tests {

@@ -17,6 +17,15 @@ mod port;
 mod second_host;
 mod side;
 mod stall;
+
+/// [`HealthChecks::look`] is called at least this often, so that "within two seconds" holds.
+pub const LOOK_EVERY_MAX: Duration = Duration::millis(200);
+/// A fault on the field must last this long before it is a finding: longer than a misread pattern can persist
+/// in tracking (0.2 s), and half of the two seconds.
+const FAULT_LASTS_MIN: Duration = Duration::millis(1_000);
+/// The field is checked only with camera frames of this age or newer.
+const FRAME_AGE_MAX: Duration = Duration::millis(300);
+
 #[cfg(test)]
 mod tests;
 
@@ -31,12 +40,6 @@ pub use port::VisionPort;
 pub use second_host::SecondHost;
 pub use side::{SideEvidence, WrongSide};
 pub use stall::Stall;
-
-/// [`HealthChecks::look`] is called at least this often, so that "within two seconds" holds.
-pub const LOOK_EVERY_MAX: Duration = Duration::millis(200);
-/// A fault on the field must last this long before it is a finding: longer than a misread pattern can persist
-/// in tracking (0.2 s), and half of the two seconds.
-const FAULT_LASTS_MIN: Duration = Duration::millis(1_000);
 
 /// A deviation from the settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +59,7 @@ pub enum Finding {
 }
 
 impl Finding {
-    /// Its identity, without its numbers: findings with the same text are one finding at several times.
+    /// Identity without numbers: findings with the same text are one finding at several times.
     pub fn matter(&self) -> String {
         match self {
             Self::Robots(found) => format!("robots {:?}", found.team),
@@ -154,6 +157,3 @@ impl Lasting {
         self.since.is_some_and(|since| now.since(since) >= FAULT_LASTS_MIN)
     }
 }
-
-/// The field is checked only with camera frames of this age or newer.
-const FRAME_AGE_MAX: Duration = Duration::millis(300);

@@ -6,10 +6,17 @@ use protocol::{Duration, Instant};
 
 use crate::Host;
 
+/// Time without camera frames after which they count as missing, from the start and from the last one.
+const SILENCE_MAX: Duration = Duration::millis(1_000);
+/// Another program that has sent nothing for this time has ended.
+const FOREIGN_SILENCE_MAX: Duration = Duration::millis(2_000);
+/// Fewer packets may come from a program that scans ports.
+const FOREIGN_MIN: u64 = 3;
+
 /// Input on vision's port without camera frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VisionPort {
-    /// Nothing at all, since the start.
+    /// No packet at all since the start.
     Nothing,
     /// Packets that hold neither camera frame nor field: another program's port.
     Foreign {
@@ -61,7 +68,7 @@ impl Port {
         )
     }
 
-    /// By the newest camera frame, the number of foreign packets, and whether any other packet came.
+    /// Updates by the newest camera frame, the number of foreign packets, and whether any other packet came.
     fn see(
         &mut self,
         now: Instant,
@@ -92,13 +99,6 @@ impl Port {
         }
     }
 }
-
-/// Time without camera frames after which they count as missing, from the start and from the last one.
-const SILENCE_MAX: Duration = Duration::millis(1_000);
-/// Another program that has sent nothing for this time has ended.
-const FOREIGN_SILENCE_MAX: Duration = Duration::millis(2_000);
-/// Fewer packets may come from a program that scans ports.
-const FOREIGN_MIN: u64 = 3;
 
 #[cfg(test)]
 mod tests {

@@ -11,7 +11,7 @@ use crate::radio::{RadioWarning, RefusalReason};
 /// Another host of our team number, with its evidence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SecondHost {
-    /// Its frames reach us: it has this boot epoch.
+    /// A host of this boot epoch, whose frames reach us.
     Received {
         /// Boot epoch of the second host.
         epoch: u32,
@@ -23,7 +23,7 @@ pub enum SecondHost {
         /// The other host's epoch, later than ours.
         epoch: u32,
     },
-    /// It started before us: robots that follow us refuse its frames.
+    /// A host that started before us: robots that follow us refuse its frames.
     Refused {
         /// The lowest number of them.
         robot: RobotId,

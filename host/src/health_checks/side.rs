@@ -10,6 +10,14 @@ use rules::{FieldSpec, Phase};
 use super::Lasting;
 use crate::Host;
 
+/// After the sides have changed robots have this time of STOP and play to cross the field: 12 m at 1.3 m/s,
+/// and as much again.
+const CROSSING_TIME: Duration = Duration::millis(20_000);
+/// Least number of robots of each team for a check of the halves.
+const HALVES_MIN: usize = 3;
+/// A robot nearer to the halfway line is in neither half, m.
+const HALFWAY_LINE_WITHIN_M: f32 = 0.1;
+
 /// The teams stand at each other's goals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongSide {
@@ -62,7 +70,7 @@ struct Seen {
     phase: Phase<rules::Colour>,
     /// Our and their keeper, where they are on the field.
     keepers: [Option<(RobotId, Point<Field>)>; 2],
-    /// Where our robots are, and theirs.
+    /// Places of our robots, and of theirs.
     robots: [Vec<Point<Field>>; 2],
 }
 
@@ -152,14 +160,6 @@ fn evidence(seen: &Seen, field: &FieldSpec) -> Option<SideEvidence> {
     let swapped = waits && in_half(ours, theirs) && in_half(others, own);
     swapped.then_some(SideEvidence::Halves(ours.len(), others.len()))
 }
-
-/// After the sides have changed robots have this time of STOP and play to cross the field: 12 m at 1.3 m/s,
-/// and as much again.
-const CROSSING_TIME: Duration = Duration::millis(20_000);
-/// Least number of robots of each team for a check of the halves.
-const HALVES_MIN: usize = 3;
-/// A robot nearer to the halfway line is in neither half, m.
-const HALFWAY_LINE_WITHIN_M: f32 = 0.1;
 
 #[cfg(test)]
 mod tests {

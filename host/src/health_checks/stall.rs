@@ -9,6 +9,28 @@ use protocol::{Duration, Instant};
 use crate::Host;
 use crate::radio::Radio;
 
+/// The host's loop wakes at least every 100 ms; at twice that, robots brake.
+const HOST_STALL: Duration = Duration::millis(200);
+/// After a stall of the computer queued packets are received within this time.
+const CATCH_UP_TIME: Duration = Duration::millis(300);
+/// Twenty camera frames; teams report blackouts of 0.2 s, which the host bridges.
+const VISION_STALL: Duration = Duration::millis(300);
+/// A robot sends beacons at 20 Hz and telemetry at 10 Hz.
+const RADIO_STALL: Duration = Duration::millis(300);
+/// Robots not received for this time were switched off.
+const SWITCHED_OFF: Duration = Duration::millis(10_000);
+/// Robots brake at 100 ms; telemetry that reports more than twice that is no single gap.
+const DOWN_STALL: Duration = Duration::millis(250);
+/// Older telemetry is out of date; it comes at 10 Hz.
+const TELEMETRY_NEW: Duration = Duration::millis(250);
+/// Snapshots go out at 60 Hz or more.
+const SNAPSHOT_GAP_MAX: Duration = Duration::millis(50);
+/// Robots that receive nothing are a stall of the radio once snapshots have gone out for this time:
+/// [`DOWN_STALL`] and the age of telemetry.
+const SENT_FOR_MIN: Duration = Duration::millis(DOWN_STALL.0 / 1_000 + TELEMETRY_NEW.0 / 1_000);
+/// A stall that is over is reported for this time, so that it can be read.
+const REPORTED_FOR: Duration = Duration::millis(3_000);
+
 /// A stall, and its duration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stall {
@@ -35,7 +57,7 @@ pub enum Stall {
 }
 
 impl Stall {
-    /// Its place: `host`, `vision` or `radio`.
+    /// Place of the stall: `host`, `vision` or `radio`.
     pub const fn place(&self) -> &'static str {
         match self {
             Self::Host { .. } => "host",
@@ -81,7 +103,7 @@ impl fmt::Display for Stall {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stalls {
     ran: Option<Instant>,
-    /// How long the computer did not run, and since when it runs again.
+    /// Time for which the computer did not run, and since when it runs again.
     host: Option<(Duration, Instant)>,
     /// Since when snapshots have gone out without a pause.
     sends_since: Option<Instant>,
@@ -98,7 +120,7 @@ struct Last {
     robot: Option<Instant>,
     /// The newest snapshot that went out.
     sent: Option<Instant>,
-    /// Of robots with new telemetry, the shortest time for which one had received nothing.
+    /// Shortest time for which a robot with new telemetry had received nothing.
     unheard: Option<Duration>,
 }
 
@@ -173,28 +195,6 @@ impl Stalls {
         unheard.map(|since| Stall::RadioDown { since })
     }
 }
-
-/// The host's loop wakes at least every 100 ms; at twice that, robots brake.
-const HOST_STALL: Duration = Duration::millis(200);
-/// After a stall of the computer queued packets are received within this time.
-const CATCH_UP_TIME: Duration = Duration::millis(300);
-/// Twenty camera frames; teams report blackouts of 0.2 s, which the host bridges.
-const VISION_STALL: Duration = Duration::millis(300);
-/// A robot sends beacons at 20 Hz and telemetry at 10 Hz.
-const RADIO_STALL: Duration = Duration::millis(300);
-/// Robots not received for this time were switched off.
-const SWITCHED_OFF: Duration = Duration::millis(10_000);
-/// Robots brake at 100 ms; telemetry that reports more than twice that is no single gap.
-const DOWN_STALL: Duration = Duration::millis(250);
-/// Older telemetry is out of date; it comes at 10 Hz.
-const TELEMETRY_NEW: Duration = Duration::millis(250);
-/// Snapshots go out at 60 Hz or more.
-const SNAPSHOT_GAP_MAX: Duration = Duration::millis(50);
-/// Robots that receive nothing are a stall of the radio once snapshots have gone out for this time:
-/// [`DOWN_STALL`] and the age of telemetry.
-const SENT_FOR_MIN: Duration = Duration::millis(DOWN_STALL.0 / 1_000 + TELEMETRY_NEW.0 / 1_000);
-/// A stall that is over is reported for this time, so that it can be read.
-const REPORTED_FOR: Duration = Duration::millis(3_000);
 
 #[cfg(test)]
 mod tests {

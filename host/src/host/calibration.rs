@@ -6,6 +6,11 @@ use protocol::host::{Directive, KickOrder};
 
 use super::Host;
 
+/// A learned gain scales a kick's order by 0.8 to 1.7, not more: values beyond are an error of learning, or a
+/// broken kicker.
+const GAIN_MIN: f32 = 1.0 / 1.7;
+const GAIN_MAX: f32 = 1.0 / 0.8;
+
 impl Host {
     /// Sets the deceleration of a rolling ball, m/s².
     pub(super) fn roll_with(&mut self, roll: f32) {
@@ -38,8 +43,3 @@ impl Host {
         directive
     }
 }
-
-/// A learned gain scales a kick's order by 0.8 to 1.7, not more: values beyond are an error of learning, or a
-/// broken kicker.
-const GAIN_MIN: f32 = 1.0 / 1.7;
-const GAIN_MAX: f32 = 1.0 / 0.8;

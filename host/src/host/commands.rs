@@ -17,13 +17,13 @@ impl Host {
         self.external.as_mut()?.poll()
     }
 
-    /// What the strategy in another program shows on the page, and the turn from its frame to the field's.
+    /// Shapes and values of the strategy in another program, and the turn from its frame to the field's.
     pub fn strategy_drawing(&self) -> Option<(Flip, &StrategyDrawing)> {
         let drawing = self.external.as_ref()?.drawing();
         Some((Flip::defending(self.our_game().defending), drawing))
     }
 
-    /// How many answers of the strategy in another program were refused, and why the last one was.
+    /// Number of refused answers of the strategy in another program, and the last one's error.
     pub fn refused_answers(&self) -> (u64, Option<&AnswerError>) {
         self.external.as_ref().map_or((0, None), |external| external.refused())
     }
@@ -38,15 +38,14 @@ impl Host {
             rule_role,
             directive: self.calibrated(to, directive),
         };
-        match &self.drill {
-            Some(drill) => {
-                drill.iter().map(|(to, role, directive)| command(*to, *role, directive.clone())).collect()
-            }
-            None => {
-                let orders = self.orders.iter();
-                orders.map(|o| command(o.robot, o.role.rule_role(), o.task.directive(flip))).collect()
-            }
+        if let Some(drill) = &self.drill {
+            return drill
+                .iter()
+                .map(|(to, role, directive)| command(*to, *role, directive.clone()))
+                .collect();
         }
+        let orders = self.orders.iter();
+        orders.map(|order| command(order.robot, order.role.rule_role(), order.task.directive(flip))).collect()
     }
 
     /// Orders of a strategy in another program are sent at once.

@@ -32,7 +32,7 @@ pub enum Input<'a> {
     Timeout,
 }
 
-/// What became of an input.
+/// Outcome of an input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum InputVerdict {
     /// A camera frame or geometry.

@@ -29,19 +29,19 @@ pub struct HostSettings {
     pub kick: [f32; RobotId::COUNT],
     /// Deceleration of a rolling ball, m/s²; none: from vision, or the league's default.
     pub roll: Option<f32>,
-    /// It uses the learned gains and deceleration; it learns in either case.
+    /// Uses the learned gains and deceleration; the host learns in either case.
     pub learns: bool,
     /// The only referee that is obeyed; none: every one, the strictest first.
     pub referee: Option<SourcePin>,
-    /// What robots do when the referee falls silent.
+    /// Behaviour of our robots when the referee falls silent.
     pub referee_silence: OnSilence,
-    /// Which team decides open play: ours or an opponent team.
+    /// Team that decides open play: ours or an opponent team.
     pub team: Team,
     /// Settings of the radio.
     pub radio: RadioSettings,
-    /// Which of the second paper's tactics it plays.
+    /// Tactics of the second paper that it plays.
     pub tactics: Tactics,
-    /// How fast its robots may drive.
+    /// Limits of its robots' motion.
     pub limits: DriveSettings,
     /// Whether a strategy in another program gives orders ([`crate::external`]).
     pub external: bool,

@@ -17,6 +17,12 @@ use crate::strategy::rated::Rated;
 use crate::tracking::Tracker;
 use crate::world::World;
 
+/// Age from which a robot's telemetry is ignored.
+const TELEMETRY_LEASE: Duration = Duration::millis(300);
+/// A sensor that touches may miss a ball at the dribbler for this long: its longest gap is 0.14 s in
+/// ER-Force's simulator, and telemetry reports samples of it.
+const FLICKER_MAX: Duration = Duration::millis(600);
+
 impl Host {
     /// The field as it was at the last planning.
     pub fn world(&self) -> &World {
@@ -137,9 +143,3 @@ impl Known {
         }
     }
 }
-
-/// Age from which a robot's telemetry is ignored.
-const TELEMETRY_LEASE: Duration = Duration::millis(300);
-/// A sensor that touches may miss a ball at the dribbler for this long: its longest gap is 0.14 s in
-/// ER-Force's simulator, and telemetry reports samples of it.
-const FLICKER_MAX: Duration = Duration::millis(600);

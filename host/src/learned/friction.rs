@@ -7,6 +7,31 @@ use protocol::{Duration, Instant};
 use super::samples::{Estimate, Samples};
 use crate::world::World;
 
+/// Samples kept: a few minutes of play.
+const ROLLS_KEPT: usize = 25;
+/// Number of rolls needed.
+const ROLLS_MIN: usize = 5;
+/// No robot's centre is nearer to the ball, m: a radius of 0.09 and its motion between two frames.
+const ROBOT_CLEARANCE_M: f32 = 0.2;
+/// A kicked ball slides for at most this time: 6.5 m/s × 2/7 at 3.9 m/s² are 0.48 s.
+const SLIDING_TIME_MAX: Duration = Duration::millis(500);
+/// Slower balls are stopped by the fibres of the field surface, and faster ones may still slide, m/s.
+const SPEED_MIN_M_S: f32 = 0.25;
+const SPEED_MAX_M_S: f32 = 5.0;
+/// A roll of this duration gives its deceleration within 0.05 m/s² where places err by 2 mm.
+const ROLL_TIME_MIN: Duration = Duration::millis(500);
+/// A longer one counts as two.
+const ROLL_TIME_DOUBLE: Duration = Duration::millis(1_500);
+/// Number of camera frames needed.
+const FRAMES_MIN: f64 = 20.0;
+/// Cosine of the turn that ends a roll: 6°, the noise of the slowest.
+const TURN_COS_MIN: f32 = 0.994;
+/// Larger deviations from the parabola are no free roll, m (root of the mean square).
+const PARABOLA_RMS_MAX_M: f64 = 0.008;
+/// Deceleration of a rolling ball on field surfaces, m/s².
+const DECELERATION_MIN_M_S2: f32 = 0.05;
+const DECELERATION_MAX_M_S2: f32 = 1.5;
+
 /// The field, as far as balls have rolled on it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Friction {
@@ -89,7 +114,8 @@ impl Roll {
         self.squares += s * s;
     }
 
-    /// By least squares, where it rolled for long enough and its deceleration is plausible.
+    /// Deceleration by least squares, m/s², where the ball rolled for long enough and its deceleration is
+    /// plausible.
     fn deceleration(&self) -> Option<f32> {
         if self.newest.since(self.began).0 < ROLL_TIME_MIN.0 || self.times[0] < FRAMES_MIN {
             return None;
@@ -111,31 +137,6 @@ impl Roll {
         rolls.then_some(deceleration)
     }
 }
-
-/// Samples kept: a few minutes of play.
-const ROLLS_KEPT: usize = 25;
-/// Number of rolls needed.
-const ROLLS_MIN: usize = 5;
-/// No robot's centre is nearer to the ball, m: a radius of 0.09 and its motion between two frames.
-const ROBOT_CLEARANCE_M: f32 = 0.2;
-/// A kicked ball slides for at most this time: 6.5 m/s × 2/7 at 3.9 m/s² are 0.48 s.
-const SLIDING_TIME_MAX: Duration = Duration::millis(500);
-/// Slower balls are stopped by the fibres of the field surface, and faster ones may still slide, m/s.
-const SPEED_MIN_M_S: f32 = 0.25;
-const SPEED_MAX_M_S: f32 = 5.0;
-/// A roll of this duration gives its deceleration within 0.05 m/s² where places err by 2 mm.
-const ROLL_TIME_MIN: Duration = Duration::millis(500);
-/// A longer one counts as two.
-const ROLL_TIME_DOUBLE: Duration = Duration::millis(1_500);
-/// Number of camera frames needed.
-const FRAMES_MIN: f64 = 20.0;
-/// Cosine of the turn that ends a roll: 6°, the noise of the slowest.
-const TURN_COS_MIN: f32 = 0.994;
-/// Larger deviations from the parabola are no free roll, m (root of the mean square).
-const PARABOLA_RMS_MAX_M: f64 = 0.008;
-/// Deceleration of a rolling ball on field surfaces, m/s².
-const DECELERATION_MIN_M_S2: f32 = 0.05;
-const DECELERATION_MAX_M_S2: f32 = 1.5;
 
 #[cfg(test)]
 mod tests {

@@ -9,6 +9,35 @@ use rules::Colour;
 use super::samples::{Estimate, Samples};
 use crate::world::{Kick, World};
 
+/// Samples kept for each robot: a half's kicks, so that a falling battery voltage is followed.
+const KICKS_KEPT: usize = 15;
+/// Number of kicks needed: of three, two with the same error determine the median.
+const KICKS_MIN: usize = 5;
+/// Number of kicks from which a test shows a gain while it goes on.
+const KICKS_SHOWN_MIN: usize = 3;
+/// A gain is known when its standard error is at most this. Chosen to exclude one estimate that was 20 % off
+/// with an error of 0.047, from kicks that left slower than ordered for a reason that is not known; the
+/// largest error of the ten right ones beside it was 0.040.
+const GAIN_ERROR_MAX: f32 = 0.04;
+/// Longest time from an order to its kick: command, radio, and the ball's path to the kicker's plate.
+const ORDER_TO_KICK_MAX: Duration = Duration::millis(400);
+/// Two kicks of one robot are farther apart; the moment of one kick shifts by less while it becomes better
+/// known.
+const SAME_KICK_WITHIN: Duration = Duration::millis(200);
+/// The ball is observed in this window after the kick: later than the filter needs, and before rolling
+/// changes the deceleration (0.29 s at 4 m/s).
+const OBSERVED_FROM: Duration = Duration::millis(50);
+const OBSERVED_TO: Duration = Duration::millis(250);
+/// Camera frames needed in that time.
+const FRAMES_MIN: f32 = 6.0;
+/// Slower orders may be touches of the dribbler instead of kicks, m/s.
+const ORDER_SPEED_MIN_M_S: f32 = 1.5;
+/// A ball that leaves its line by more has hit something, m (root of the mean square).
+const LINE_RMS_MAX_M: f32 = 0.02;
+/// No kicker is softer or harder than this.
+const GAIN_MIN: f32 = 0.4;
+const GAIN_MAX: f32 = 2.0;
+
 /// Estimates of all robots' kick gains.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Kicks {
@@ -147,35 +176,6 @@ impl Watched {
         (residual < LINE_RMS_MAX_M * LINE_RMS_MAX_M && (GAIN_MIN..=GAIN_MAX).contains(&gain)).then_some(gain)
     }
 }
-
-/// Samples kept for each robot: a half's kicks, so that a falling battery voltage is followed.
-const KICKS_KEPT: usize = 15;
-/// Number of kicks needed: of three, two with the same error determine the median.
-const KICKS_MIN: usize = 5;
-/// Of so many kicks a test shows a gain while it goes on.
-const KICKS_SHOWN_MIN: usize = 3;
-/// A gain is known when its standard error is at most this. Chosen to exclude one estimate that was 20 % off
-/// with an error of 0.047, from kicks that left slower than ordered for a reason that is not known; the
-/// largest error of the ten right ones beside it was 0.040.
-const GAIN_ERROR_MAX: f32 = 0.04;
-/// Longest time from an order to its kick: command, radio, and the ball's path to the kicker's plate.
-const ORDER_TO_KICK_MAX: Duration = Duration::millis(400);
-/// Two kicks of one robot are farther apart; the moment of one kick shifts by less while it becomes better
-/// known.
-const SAME_KICK_WITHIN: Duration = Duration::millis(200);
-/// The ball is observed in this window after the kick: later than the filter needs, and before rolling
-/// changes the deceleration (0.29 s at 4 m/s).
-const OBSERVED_FROM: Duration = Duration::millis(50);
-const OBSERVED_TO: Duration = Duration::millis(250);
-/// Camera frames needed in that time.
-const FRAMES_MIN: f32 = 6.0;
-/// Slower orders may be touches of the dribbler instead of kicks, m/s.
-const ORDER_SPEED_MIN_M_S: f32 = 1.5;
-/// A ball that leaves its line by more has hit something, m (root of the mean square).
-const LINE_RMS_MAX_M: f32 = 0.02;
-/// No kicker is softer or harder than this.
-const GAIN_MIN: f32 = 0.4;
-const GAIN_MAX: f32 = 2.0;
 
 #[cfg(test)]
 mod tests {

@@ -13,6 +13,25 @@ use rules::{Colour, Phase, Side};
 use super::samples::{Estimate, Samples};
 use crate::world::World;
 
+/// Samples kept for each robot.
+const STARTS_KEPT: usize = 15;
+/// Number of starts needed.
+const STARTS_MIN: usize = 3;
+/// A robot whose place stays within this stands still, m: noise of 3 mm.
+const STILL_WITHIN_M: f32 = 0.008;
+/// Time for which it must stay there to stand still.
+const STILL_FOR: Duration = Duration::millis(300);
+/// Least distance of the place ordered at which it starts with its full acceleration, m.
+const ORDER_DISTANCE_MIN_M: f32 = 0.4;
+/// The distances moved from which the onset is computed, m: above the noise, and nine times that.
+const MOVED_FIRST_M: f32 = 0.010;
+const MOVED_LAST_M: f32 = 0.090;
+/// Range of plausible latencies from order to motion, s; a clearly negative one is an error of the clocks.
+const ONSET_MIN_S: f32 = -0.03;
+const ONSET_MAX_S: f32 = 0.3;
+/// A robot that has not moved 90 mm by then is obstructed, s after the order.
+const WAITED_MAX_S: f32 = 0.8;
+
 /// Estimates of all robots' latencies.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Latencies {
@@ -22,19 +41,19 @@ pub(super) struct Latencies {
 #[derive(Clone, Copy, Debug, Default)]
 struct Robot {
     samples: Samples<STARTS_KEPT>,
-    /// Its stop position, and since when it stands there.
+    /// Stop position, and since when it stands there.
     rests: Option<(Point<Field>, Instant)>,
-    /// Its last order was not to go anywhere.
+    /// Whether its last order was not to go anywhere.
     was_idle: bool,
     start: Option<Start>,
 }
 
-/// It stood still and has been ordered to move.
+/// A robot that stood still and has been ordered to move.
 #[derive(Clone, Copy, Debug)]
 struct Start {
     ordered: Instant,
     from: Point<Field>,
-    /// Its newest place: distance moved, and time, s after the order.
+    /// Newest place: distance moved, and time, s after the order.
     newest: (f32, f32),
     /// When it had moved by [`MOVED_FIRST_M`].
     near: Option<f32>,
@@ -74,7 +93,7 @@ impl Latencies {
 }
 
 impl Robot {
-    /// It was seen there at that time.
+    /// Takes the robot's place at that time.
     fn follow(&mut self, at: Instant, place: Point<Field>) {
         if let Some(mut start) = self.start.take() {
             let (travelled, t) = (start.from.distance(place), signed(start.ordered, at));
@@ -100,7 +119,7 @@ impl Robot {
         };
     }
 
-    /// It is ordered to that place now, or to none.
+    /// Takes the robot's order to a place, or to none.
     fn order(&mut self, now: Instant, at: Instant, place: Point<Field>, to: Option<Point<Field>>) {
         let goes = to.is_some_and(|to| to.distance(place) > ORDER_DISTANCE_MIN_M);
         let Some((from, since)) = self.rests else { return };
@@ -121,25 +140,6 @@ impl Robot {
 fn signed(from: Instant, to: Instant) -> f32 {
     if to >= from { to.since(from).as_secs_f32() } else { -from.since(to).as_secs_f32() }
 }
-
-/// Samples kept for each robot.
-const STARTS_KEPT: usize = 15;
-/// Number of starts needed.
-const STARTS_MIN: usize = 3;
-/// A robot whose place stays within this stands still, m: noise of 3 mm.
-const STILL_WITHIN_M: f32 = 0.008;
-/// Time for which it must stay there to stand still.
-const STILL_FOR: Duration = Duration::millis(300);
-/// Least distance of the place ordered at which it starts with its full acceleration, m.
-const ORDER_DISTANCE_MIN_M: f32 = 0.4;
-/// The distances moved from which the onset is computed, m: above the noise, and nine times that.
-const MOVED_FIRST_M: f32 = 0.010;
-const MOVED_LAST_M: f32 = 0.090;
-/// Range of plausible latencies from order to motion, s; a clearly negative one is an error of the clocks.
-const ONSET_MIN_S: f32 = -0.03;
-const ONSET_MAX_S: f32 = 0.3;
-/// A robot that has not moved 90 mm by then is obstructed, s after the order.
-const WAITED_MAX_S: f32 = 0.8;
 
 #[cfg(test)]
 mod tests {

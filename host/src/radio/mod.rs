@@ -67,10 +67,10 @@ pub enum To {
     One(RobotId),
 }
 
-/// How robots' beacons reach their teammates.
+/// Path of robots' beacons to their teammates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relay {
-    /// They receive each other directly.
+    /// Robots receive each other directly.
     No,
     /// One at a time: a link that has an address for each robot.
     ToEach,
@@ -87,7 +87,7 @@ pub struct RadioSettings {
     pub key: TeamKey,
     /// The host's epoch: must rise with every start; Unix seconds do.
     pub epoch: u32,
-    /// How beacons are forwarded between robots.
+    /// Forwarding of beacons between robots.
     pub relay: Relay,
     /// One-way latency of a packet: snapshots are extrapolated by it. 3 ms is what ER-Force takes for theirs.
     pub latency: Duration,
@@ -104,13 +104,13 @@ impl RadioSettings {
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RadioReceived {
-    /// To its teammates: its state.
+    /// State of a robot, to its teammates.
     Beacon(RobotId, Beacon),
-    /// To the host: its condition.
+    /// Condition of a robot, to the host.
     Telemetry(RobotId, Telemetry),
-    /// To its teammates: its boot epoch.
+    /// Boot epoch of a robot, to its teammates.
     Handshake(RobotId),
-    /// To the host: a part of the problem it decided on.
+    /// Part of the problem that a robot decided on, to the host.
     Decision(RobotId, DecisionPart),
 }
 
@@ -142,7 +142,7 @@ struct Latest {
     world: World,
     situation: RadioSituation,
     commands: heapless::Vec<HostCommand, { RobotId::COUNT }>,
-    /// It has not gone out yet.
+    /// Whether the snapshot has not gone out yet.
     fresh: bool,
 }
 
@@ -258,7 +258,7 @@ impl Radio {
         }
     }
 
-    /// How the link to that robot is; `None` until a frame of it was received.
+    /// Quality of the link to that robot; `None` until a frame of it was received.
     pub fn quality(&self, robot: RobotId) -> Option<&Quality> {
         Some(&self.robots[robot.index()]).filter(|quality| quality.received_at().is_some())
     }
@@ -281,7 +281,7 @@ impl Radio {
         kinds.iter().fold(0, |sum, kind| sum.saturating_add(refused[kind.kind()]))
     }
 
-    /// What prevents communication between robots and this host now, and how to fix it.
+    /// Warnings of what prevents communication between robots and this host now, with remedies.
     pub fn warnings(&self, now: Instant) -> impl Iterator<Item = RadioWarning> {
         self.refusals.warnings(now, self.link.epoch())
     }

@@ -56,7 +56,7 @@ pub struct LinkTotals {
     pub bytes: u64,
     /// Parts of our snapshots that it received, and those that it lost.
     pub down: (u64, u64),
-    /// Its frames that came, and those that were lost.
+    /// Frames of the robot that came, and those that were lost.
     pub up: (u64, u64),
     /// Round trips measured, and their sum, ms.
     pub trips: (u64, f64),
@@ -97,28 +97,28 @@ impl Quality {
         self.received_at
     }
 
-    /// How long it has been silent.
+    /// Time since the robot's last frame.
     pub fn silence(&self, now: Instant) -> Option<Duration> {
         self.received_at.map(|received| now.since(received))
     }
 
-    /// Its telemetry has named our epoch within [`PRESENT`].
+    /// Whether its telemetry has named our epoch within [`PRESENT`].
     pub fn is_present(&self, now: Instant) -> bool {
         self.present_at.is_some_and(|at| now.since(at) <= PRESENT)
     }
 
-    /// Its newest telemetry, and when it came.
+    /// Newest telemetry, and when it came.
     pub fn telemetry(&self) -> Option<&(Instant, Telemetry)> {
         self.telemetry.as_ref()
     }
 
-    /// Its battery, V, where it measures one.
+    /// Battery voltage, V, where the robot measures one.
     pub fn battery(&self) -> Option<f32> {
         let (_, telemetry) = self.telemetry?;
         (telemetry.battery > 0).then(|| f32::from(telemetry.battery) * 0.01)
     }
 
-    /// Its newest report on its body.
+    /// Newest report of the robot on its body.
     pub fn condition(&self) -> Condition {
         self.telemetry.map_or(Condition::default(), |(_, telemetry)| telemetry.condition)
     }
@@ -133,7 +133,7 @@ impl Quality {
         self.down.lost_percent()
     }
 
-    /// Its frames that we did not receive, percent.
+    /// Frames of the robot that we did not receive, percent.
     pub fn loss_up(&self) -> Option<f64> {
         self.up.lost_percent()
     }

@@ -24,7 +24,7 @@ pub struct RadioSituation {
     pub us: Colour,
     /// The phase, by side (ours or theirs).
     pub phase: Phase<Side>,
-    /// Where the ball is to be placed, during placement.
+    /// Place for the ball during a placement.
     pub placement: Option<Point<Field>>,
 }
 

@@ -11,7 +11,8 @@ use protocol::{Duration, Instant, RobotId, TeamId};
 const COUNT_WINDOW: Duration = Duration::millis(1_000);
 /// A matter is over when no frame of it came for this time.
 const QUIET_FOR: Duration = Duration::millis(2_000);
-/// Number of frames within [`COUNT_WINDOW`] that is no accident: a line that corrupts one bit in 10⁵ breaks fewer.
+/// Number of frames within [`COUNT_WINDOW`] that is no accident: a line that corrupts one bit in 10⁵ breaks
+/// fewer.
 const FRAMES_MANY: u32 = 5;
 /// After every start senders may be unauthenticated for this time, until each has received each other's epoch
 /// (handshakes every 500 ms, some lost).
@@ -37,17 +38,17 @@ pub enum RadioWarning {
 /// Why a robot refuses frames, as its telemetry counts them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefusalReason {
-    /// They are of another protocol version.
+    /// Frames of another protocol version.
     Version,
-    /// They are of another team's number.
+    /// Frames of another team's number.
     Team,
-    /// They are of an earlier epoch of the host.
+    /// Frames of an earlier epoch of the host.
     Epoch,
     /// Their tags are not its key's.
     Tag,
-    /// They are of a host or teammate that has not named its epoch.
+    /// Frames of a host or teammate that has not named its epoch.
     Unauthenticated,
-    /// They are more than 200 ms old.
+    /// Frames more than 200 ms old.
     Stale,
 }
 
@@ -160,7 +161,7 @@ impl Rising {
     }
 }
 
-/// What is known of one robot's refusals.
+/// Refusals by one robot, and of its frames.
 #[derive(Clone, Copy, Debug, Default)]
 struct OfRobot {
     last_refused: Option<[u16; Refusal::KINDS]>,

@@ -23,7 +23,7 @@ use crate::referee::SenderAddress;
 /// Bytes that wait at most: 16 s of a match (four cameras, eleven robots: 0.5 MB/s), which bounds the memory
 /// used.
 const QUEUE_BYTES_MAX: usize = 8 << 20;
-/// What an entry takes beside its bytes.
+/// Size of an entry beside its payload, bytes.
 const ENTRY_LEN: usize = 96;
 
 /// A recorder that never blocks its caller.

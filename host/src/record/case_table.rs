@@ -5,6 +5,11 @@ use casebase::CaseBase;
 
 use crate::hex;
 
+/// A table begins at a multiple of this many bytes.
+const TABLE_ALIGNMENT: usize = 4;
+/// Longest table that is written, bytes: with it a header of two hosts is shorter than 1 MiB.
+const TABLE_LEN_MAX: usize = 400_000;
+
 /// The table's bytes, two digits each; `None` of a table too long for a header.
 pub(super) fn write(base: CaseBase<'_>) -> Option<String> {
     (base.bytes().len() <= TABLE_LEN_MAX).then(|| hex::encode(base.bytes()))
@@ -24,11 +29,6 @@ pub(super) fn read(digits: &str) -> Result<CaseBase<'static>, String> {
     kept.copy_within(TABLE_ALIGNMENT.., start);
     CaseBase::from_bytes(&kept[start..start + table.len()]).map_err(|error| error.to_string())
 }
-
-/// A table begins at a multiple of this many bytes.
-const TABLE_ALIGNMENT: usize = 4;
-/// Longest table that is written, bytes: with it a header of two hosts is shorter than 1 MiB.
-const TABLE_LEN_MAX: usize = 400_000;
 
 #[cfg(test)]
 mod tests {

@@ -19,6 +19,8 @@ use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::cases_of;
 use crate::strategy::{Tactics, Team};
 
+const RELAYS: [(&str, Relay); 3] = [("no", Relay::No), ("to-each", Relay::ToEach), ("to-all", Relay::ToAll)];
+
 /// The header of a trace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordingHeader {
@@ -48,12 +50,12 @@ pub struct RecordingHeader {
 /// The settings one host started with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HostHeader {
-    /// Its colour: `blue` or `yellow`.
+    /// Colour of the team: `blue` or `yellow`.
     pub colour: String,
-    /// Its goal until the referee reports it: `yellow` is the one at −x, `cyan` the one at +x, as in
-    /// problems.
+    /// Goal that it defends until the referee reports it: `yellow` is the one at −x, `cyan` the one at +x, as
+    /// in problems.
     pub defending: String,
-    /// Its keeper until the referee names one.
+    /// Number of its keeper until the referee names one.
     pub keeper: u8,
     /// Ball speed over speed ordered, by robot.
     pub kick: Vec<f32>,
@@ -66,28 +68,28 @@ pub struct HostHeader {
     /// When it started, on its own clock, µs.
     #[serde(default)]
     pub began_us: u64,
-    /// Which team decided open play: ours or an opponent team.
+    /// Team that decided open play: ours or an opponent team.
     #[serde(default)]
     pub plays: Team,
     /// The team's number on the radio.
     pub team: u8,
     /// Epoch of the host on the radio.
     pub epoch: u32,
-    /// How beacons were forwarded: `no`, `to-each` or `to-all`.
+    /// Forwarding of beacons: `no`, `to-each` or `to-all`.
     pub relay: String,
     /// One-way latency of a packet, µs.
     pub way_us: u64,
     /// The only referee that was obeyed, as `--referee-source` takes it; none: every one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub referee_source: Option<String>,
-    /// What robots did when the referee fell silent, as `--referee-silence` takes it; none: its last command
-    /// was kept.
+    /// Behaviour of its robots when the referee fell silent, as `--referee-silence` takes it; none: its last
+    /// command was kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub referee_silence: Option<String>,
     /// Whether frames were sealed with a key other than zeros.
     #[serde(default)]
     pub keyed: bool,
-    /// Which tactics it played.
+    /// Tactics that the host played.
     #[serde(default = "Tactics::none")]
     pub tactics: Tactics,
     /// The hash of the case base in which its robots' cases were looked up, where its tactics needed one.
@@ -108,7 +110,7 @@ pub struct HostHeader {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the recording's header: {description}")]
 pub struct HeaderError {
-    /// What is wrong, with its place.
+    /// Text on what is wrong, with its place.
     pub description: String,
 }
 
@@ -117,7 +119,7 @@ fn wrong(description: impl Into<String>) -> HeaderError {
 }
 
 impl RecordingHeader {
-    /// Of one host that starts at its instant 0; what the program knows besides is left out.
+    /// Header of one host that starts at its instant 0; what the program knows besides is left out.
     pub fn of(settings: &HostSettings) -> Self {
         Self {
             version: String::new(),
@@ -146,7 +148,7 @@ impl RecordingHeader {
         read.map_err(|error| wrong(format!("case_table: {error}")))
     }
 
-    /// As JSON, as it is written at the start of a trace.
+    /// JSON at the start of a trace.
     pub fn to_json(&self) -> String {
         // Strings, numbers and lists of them: JSON can represent all of it.
         serde_json::to_string(self).unwrap_or_default()
@@ -171,8 +173,6 @@ impl RecordingHeader {
 fn hash_of(cases: CaseBase<'_>) -> String {
     format!("{:08x}", cases.hash())
 }
-
-const RELAYS: [(&str, Relay); 3] = [("no", Relay::No), ("to-each", Relay::ToEach), ("to-all", Relay::ToAll)];
 
 impl HostHeader {
     /// The header of one host that starts at `began`.
@@ -295,7 +295,7 @@ impl HostHeader {
         })
     }
 
-    /// How fast its robots may drive.
+    /// Limits of its robots' motion.
     fn limits(&self) -> Result<DriveSettings, HeaderError> {
         let limits = DriveSettings { speed: self.speed_limit, acceleration: self.acceleration_limit };
         limits.checked().map_err(|error| wrong(error.to_string()))
@@ -306,7 +306,7 @@ impl HostHeader {
         Instant(self.began_us)
     }
 
-    /// Its radio, sealed with that key.
+    /// Settings of its radio, sealed with that key.
     pub fn radio(&self, key: TeamKey) -> Result<RadioSettings, HeaderError> {
         let relay = RELAYS.iter().find(|(label, _)| *label == self.relay);
         let (_, relay) =

@@ -36,14 +36,14 @@ pub struct RecheckCounts {
     pub same: u64,
 }
 
-/// Where record and host differ. Times on the host's clock.
+/// Difference between record and host. Times on the host's clock.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Difference {
     /// The host sends another packet than recorded.
     Other {
         /// When it was recorded.
         at: Instant,
-        /// How many packets were the same before.
+        /// Number of packets that were the same before.
         after: u64,
         /// The packet recorded: the robot it is for (255: all), then the frame.
         recorded: Vec<u8>,
@@ -54,7 +54,7 @@ pub enum Difference {
     Missing {
         /// When it was recorded.
         at: Instant,
-        /// How many packets were the same before.
+        /// Number of packets that were the same before.
         after: u64,
         /// Number of the receiving robot; 255 for all.
         to: u8,
@@ -63,7 +63,7 @@ pub enum Difference {
     Extra {
         /// When the host sent it.
         at: Instant,
-        /// How many packets were the same before.
+        /// Number of packets that were the same before.
         after: u64,
         /// Number of the receiving robot; 255 for all.
         to: u8,

@@ -83,7 +83,7 @@ pub struct Record {
     pub kind: RecordKind,
     /// The sender, for packets of the referee; [`SenderAddress::INTERNAL`] for everything else.
     pub from: SenderAddress,
-    /// Its payload without the head, at most [`RECORD_LEN_MAX`].
+    /// Payload without the head, at most [`RECORD_LEN_MAX`].
     pub bytes: Vec<u8>,
 }
 
@@ -141,18 +141,18 @@ pub struct Reader<R: Read> {
     pub version: u32,
     header: String,
     end: Option<TraceEnd>,
-    /// Where the next record starts.
+    /// Start of the next record, bytes of the uncompressed trace.
     at: u64,
     /// Time of the last one.
     last: Option<Instant>,
 }
 
-/// How a trace ended.
+/// End of a trace.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TraceEnd {
     /// After a whole record.
     Whole,
-    /// Where the recorder could not keep up.
+    /// A gap where the recorder could not keep up.
     Lost {
         /// Time of the gap.
         at: Instant,
@@ -160,16 +160,16 @@ pub enum TraceEnd {
     /// Within a record, or before the end of the compressed stream: the program that wrote it was killed, or
     /// the file was not copied whole.
     Cut {
-        /// Where the first missing record starts, bytes of the uncompressed trace.
+        /// Start of the first missing record, bytes of the uncompressed trace.
         at: u64,
         /// Time of the last whole record.
         last: Option<Instant>,
     },
     /// At a record that is invalid, or cannot be read.
     Broken {
-        /// Where it starts, bytes of the uncompressed trace.
+        /// Start of the record, bytes of the uncompressed trace.
         at: u64,
-        /// What is wrong with it.
+        /// Text on what is wrong with the record.
         what: String,
     },
 }
@@ -210,7 +210,7 @@ pub enum TraceError {
     /// An error while reading.
     #[error("{0}")]
     Io(io::Error),
-    /// It does not start as a trace does.
+    /// A file that does not start as a trace does.
     #[error("it does not begin with ONETWO_TRACE: no trace of ours")]
     NotATrace,
     /// Another version of the format, which is not read.
@@ -262,7 +262,7 @@ impl<R: Read> Reader<R> {
         &self.header
     }
 
-    /// How it ended, once it has.
+    /// End of the trace, once it is reached.
     pub fn end(&self) -> Option<&TraceEnd> {
         self.end.as_ref()
     }

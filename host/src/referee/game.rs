@@ -19,7 +19,7 @@ pub struct Game {
     pub phase: Phase<Colour>,
     /// The phase after the current stop, if the referee sends it.
     pub next: Option<Phase<Colour>>,
-    /// Where the ball is to be placed; only while it is ([`Phase::BallPlacement`]), even if packets of other
+    /// Place for the ball; only while it is ([`Phase::BallPlacement`]), even if packets of other
     /// phases have one (trap 3).
     pub placement: Option<Point<Field>>,
     /// The part of the match.
@@ -32,7 +32,7 @@ pub struct Game {
     pub blue_goal: Option<GoalEnd>,
     /// Kind of match: friendly, group phase, elimination.
     pub match_type: MatchType,
-    /// What the referee waits for, as it sends it.
+    /// Text of the referee on what it waits for.
     pub status: String,
     /// Yellow's and blue's account, in this order.
     pub teams: [TeamAccount; 2],
@@ -63,7 +63,7 @@ impl Default for Game {
 /// State of one team as the referee reports it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TeamAccount {
-    /// Its name; empty while unknown.
+    /// Name of the team; empty while unknown.
     pub name: String,
     /// Number of goals scored.
     pub score: u32,
@@ -141,8 +141,8 @@ impl Game {
         self.next = next.and_then(|command| command.leads_to(self.phase));
     }
 
-    /// Where the ball is being put, by robots or by hand: in ball placement, and in the stop before a free
-    /// kick or penalty. In other phases packets hold a place too, that of an earlier phase (trap 3).
+    /// Place where the ball is being put, by robots or by hand: in ball placement, and in the stop before a
+    /// free kick or penalty. In other phases packets hold a place too, that of an earlier phase (trap 3).
     pub fn ball_goes_to(&self) -> Option<Point<Field>> {
         let follows = matches!(self.next, Some(Phase::FreeKick(_) | Phase::PreparePenalty(_)));
         let by_hand = self.phase == Phase::Stop && follows;

@@ -38,7 +38,7 @@ impl SenderAddress {
         self.ip
     }
 
-    /// As a trace stores it: IPv6 (IPv4 mapped), 16 bytes, then the port, little endian.
+    /// Bytes as a trace stores them: IPv6 (IPv4 mapped), 16 bytes, then the port, little endian.
     pub fn to_bytes(self) -> [u8; Self::LEN] {
         let ip = match self.ip {
             IpAddr::V4(ip) => ip.to_ipv6_mapped(),
@@ -79,7 +79,7 @@ impl fmt::Display for SenderAddress {
 pub struct SourceKey {
     /// `source_identifier` of its packets; foreign text, [`fmt::Display`] escapes it.
     pub identifier: Option<String>,
-    /// Where its packets come from.
+    /// Address that its packets come from.
     pub address: SenderAddress,
 }
 

@@ -9,7 +9,8 @@
 //! HALT and STOP out of order also restrain, for [`HOLD`] from their arrival, without changing the stored
 //! game. That is safe in both directions: a genuine HALT whose stamp seems old is repeated every 25 ms and
 //! keeps the robots halted, while a late copy of an old STOP delays a newer command once, by 0.3 s. Copies
-//! from a second network are recognised by stamp, command and counter for [`COPY_WITHIN`] and restrain nothing.
+//! from a second network are recognised by stamp, command and counter for [`COPY_WITHIN`] and restrain
+//! nothing.
 //!
 //! A clock or a counter that steps is followed when its packets agree with each other for [`CONFIRM`] and
 //! none came in order meanwhile: two programs with the same identity never reach that, and only HALT and STOP
@@ -28,8 +29,8 @@ use super::stamps::{StampClock, WINDOW};
 use super::verdict::{Doubt, Taken};
 use super::{Game, SILENCE, description};
 
-/// Time for which HALT or STOP out of order restrains: 12 periods of the controller, and twice `COPY_WITHIN`, so
-/// that a referee whose stamps stay the same restrains without a gap.
+/// Time for which HALT or STOP out of order restrains: 12 periods of the controller, and twice `COPY_WITHIN`,
+/// so that a referee whose stamps stay the same restrains without a gap.
 pub const HOLD: Duration = WINDOW;
 /// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`]
 /// of the step.
@@ -74,7 +75,7 @@ pub(super) struct Source {
     pub(super) received: Instant,
     pub(super) state: GameState,
     pub(super) game: Game,
-    /// Its newest command in order.
+    /// Newest command in order.
     pub(super) command: RefereeCommand,
     /// Why its last packet was out of order; none once a clock or counter that stepped is followed.
     doubted: Option<Doubted>,
@@ -139,7 +140,7 @@ struct Candidate {
 /// Result of a packet of one source.
 #[derive(Debug)]
 pub(super) enum Outcome {
-    /// It is in order and was taken.
+    /// A packet in order, which was taken.
     Taken(Taken),
     /// Out of order; `restrains`: it is HALT or STOP, and obeyed.
     Doubted { doubt: Doubt, restrains: bool },
@@ -148,7 +149,7 @@ pub(super) enum Outcome {
 }
 
 impl Source {
-    /// By its first packet, which is in order.
+    /// Creates a source by its first packet, which is in order.
     pub(super) fn new(
         key: SourceKey,
         packet: &Referee,
@@ -210,12 +211,12 @@ impl Source {
         Outcome::Taken(taken)
     }
 
-    /// How strict this source is now: its newest command in order, and those out of order.
+    /// Strictness of this source now: its newest command in order, and those out of order.
     pub(super) fn strictness(&self, now: Instant) -> Strictness {
         self.restraint(now).max(Strictness::of(self.command))
     }
 
-    /// What its packets out of order impose.
+    /// Strictness that its packets out of order impose.
     pub(super) fn restraint(&self, now: Instant) -> Strictness {
         match () {
             () if now < self.halt_until => Strictness::Halt,

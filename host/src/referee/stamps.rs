@@ -49,7 +49,7 @@ impl StampClock {
         self.followed = self.followed.max(now);
     }
 
-    /// How far this clock is ahead of that one, µs.
+    /// Lead of this clock over that one, µs.
     pub(super) fn ahead_of(&self, other: &Self) -> i64 {
         (self.offset - other.offset).clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
     }

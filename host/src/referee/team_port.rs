@@ -29,7 +29,7 @@ pub const PING_EVERY: Duration = Duration::millis(5_000);
 /// Between two attempts to connect or to register: long enough not to fill the controller's log, short enough
 /// for a name that its operator just entered.
 pub const RETRY_AFTER: Duration = Duration::millis(2_000);
-/// What a team may ask for.
+/// Requests that a team may send.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TeamPortRequest {
     /// This robot is our goalkeeper from now on; granted while the ball is out of play or in their half.
@@ -74,7 +74,7 @@ pub enum TeamPortEvent {
 /// Why a connection is given up.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Trouble {
-    /// It was closed, or could not be opened; the requests that waited are kept.
+    /// The connection was closed, or could not be opened; the requests that waited are kept.
     Closed,
     /// No answer within [`REPLY_TIME`].
     NoAnswer,

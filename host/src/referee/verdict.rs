@@ -38,16 +38,16 @@ pub struct RefereeCounts {
 /// Result of a packet.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RefereeVerdict {
-    /// It was taken as the newest state.
+    /// A packet that was taken as the newest state.
     Taken(Taken),
-    /// It is out of order.
+    /// A packet out of order.
     Doubted {
         /// The check that it failed.
         doubt: Doubt,
-        /// It is HALT or STOP, and restrains for [`HOLD`](super::HOLD) nevertheless.
+        /// Whether it is HALT or STOP, and restrains for [`HOLD`](super::HOLD) nevertheless.
         restrains: bool,
     },
-    /// It was received just before.
+    /// A packet that was received just before.
     Copy,
     /// Another source sent it than the one that is followed; if it is stricter, it is obeyed.
     OtherSource {
@@ -64,13 +64,13 @@ pub enum RefereeVerdict {
 /// Why a packet is not in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
-    /// Its stamp is ahead of its arrival.
+    /// A stamp ahead of the packet's arrival.
     Ahead(Duration),
-    /// Its stamp is behind its arrival.
+    /// A stamp behind the packet's arrival.
     Behind(Duration),
     /// A newer one came before it.
     Old(Duration),
-    /// Its counter fell, or is unchanged though the command changed.
+    /// A counter that fell, or is unchanged though the command changed.
     Counter,
 }
 

@@ -11,6 +11,9 @@ use super::identity::{SourceKey, SourcePin};
 use super::verdict::Doubt;
 use super::{HALT_AFTER, Listener, OnSilence, SILENCE};
 
+/// Time for which a step of the clock is reported.
+const STEP_REPORTED: Duration = Duration::millis(5_000);
+
 /// A fault of the referee's sources that persists now.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
@@ -48,7 +51,7 @@ pub enum Warning {
         /// The step, µs; negative: back.
         by: i64,
     },
-    /// Nothing came from the source that is followed, nor from another, for [`HALT_AFTER`] or longer.
+    /// No packet came from the source that is followed, nor from another, for [`HALT_AFTER`] or longer.
     Silent {
         /// The source that was followed.
         source: SourceKey,
@@ -65,9 +68,6 @@ pub enum Warning {
         pin: SourcePin,
     },
 }
-
-/// Time for which a step of the clock is reported.
-const STEP_REPORTED: Duration = Duration::millis(5_000);
 
 impl Listener {
     /// The faults of the sources now; empty while one referee sends packets in order.
@@ -125,7 +125,7 @@ fn pin_for(source: &SourceKey, other: &SourceKey) -> String {
 }
 
 impl Warning {
-    /// Its identity, without its numbers: warnings with the same text are one warning at several times.
+    /// Identity without numbers: warnings with the same text are one warning at several times.
     pub fn matter(&self) -> String {
         match self {
             Self::Disagreement { followed, other, .. } => format!("disagreement {followed} {other}"),

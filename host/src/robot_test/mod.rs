@@ -18,7 +18,22 @@ use crate::learned::{Estimate, Kicks};
 use crate::strategy::{Order, OrderReason, Orders, Role, Task, View};
 use crate::world::World;
 
-/// What the operator asks for, as JSON in a trace and from the page.
+/// Fewest kicks of a test: of five, two may be spoiled.
+const KICKS_LEAST: u8 = 5;
+/// Most: as many as a fit keeps.
+const KICKS_MOST: u8 = 15;
+/// Speeds in turn, cm/s: as passes have them; with the greatest gain the least of them is still ordered
+/// faster than 1.5 m/s, below which a kick is not told from a touch.
+const SPEEDS_CM_S: [u16; 4] = [320, 260, 380, 440];
+/// A ball faster than this was kicked, m/s: the weakest kicker gives 1.04, and a ball at the dribbler of a
+/// robot that lines up moves slower.
+const KICKED_SPEED_MIN_M_S: f32 = 0.9;
+/// A ball slower than this is fetched, m/s.
+const RESTING_SPEED_MAX_M_S: f32 = 0.3;
+/// A ball that has moved less lies where it was, m: the robot pushes it while it lines up.
+const SAME_PLACE_WITHIN_M: f32 = 0.4;
+
+/// Request of the operator, as JSON in a trace and from the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub enum TestOrder {
@@ -41,10 +56,10 @@ pub enum TestRefused {
     /// The line is no order.
     #[error("no test: {0}")]
     Malformed(String),
-    /// There is no robot of this number.
+    /// A number that no robot has.
     #[error("{0} is no robot; ids are 0 to 15")]
     NoSuchRobot(u8),
-    /// So many kicks are not measured.
+    /// A number of kicks that is not measured.
     #[error("{0} kicks: a test measures {KICKS_LEAST} to {KICKS_MOST}")]
     Kicks(u8),
     /// A strategy in another program gives the orders.
@@ -66,14 +81,14 @@ impl TestOrder {
         }
     }
 
-    /// As JSON, for a trace.
+    /// JSON of the order, for a trace.
     pub fn to_json(self) -> String {
         // Numbers and words: JSON can represent all of it.
         serde_json::to_string(&self).unwrap_or_default()
     }
 }
 
-/// How a test of a kicker stands.
+/// State of a kicker's test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TestState {
@@ -93,7 +108,7 @@ pub enum TestState {
     Done,
 }
 
-/// What a test of a kicker has found so far.
+/// Findings of a kicker's test so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KickReport {
     /// Robot whose kicker is tested.
@@ -119,7 +134,7 @@ pub(crate) struct RobotTest {
     tried: usize,
     /// The last kick still rolls.
     rolls: bool,
-    /// Where the ball lay when the target was chosen, and the target.
+    /// Place of the ball when the target was chosen, and the target.
     target: Option<[Point<Attack>; 2]>,
     state: TestState,
 }
@@ -136,7 +151,7 @@ impl RobotTest {
         Some(Self { kicker, fit, kicks, tried: 0, rolls: false, target: None, state })
     }
 
-    /// What it has found; none: all stand.
+    /// Findings so far; none: all stand.
     pub(crate) fn report(&self) -> Option<KickReport> {
         let (robot, wanted) = self.kicker?;
         let (kicks, gain) = (self.kicks.clone(), self.fit.estimate(robot));
@@ -158,7 +173,7 @@ impl RobotTest {
         orders.collect()
     }
 
-    /// What the kicker does, and how the test stands.
+    /// Task of the kicker; updates the test's state.
     fn kick(&mut self, view: &View) -> Option<Task> {
         let (robot, wanted) = self.kicker?;
         self.look(view);
@@ -221,21 +236,6 @@ impl RobotTest {
         }
     }
 }
-
-/// Fewest kicks of a test: of five, two may be spoiled.
-const KICKS_LEAST: u8 = 5;
-/// Most: as many as a fit keeps.
-const KICKS_MOST: u8 = 15;
-/// Speeds in turn, cm/s: as passes have them; with the greatest gain the least of them is still ordered
-/// faster than 1.5 m/s, below which a kick is not told from a touch.
-const SPEEDS_CM_S: [u16; 4] = [320, 260, 380, 440];
-/// A ball faster than this was kicked, m/s: the weakest kicker gives 1.04, and a ball at the dribbler of a
-/// robot that lines up moves slower.
-const KICKED_SPEED_MIN_M_S: f32 = 0.9;
-/// A ball slower than this is fetched, m/s.
-const RESTING_SPEED_MAX_M_S: f32 = 0.3;
-/// A ball that has moved less lies where it was, m: the robot pushes it while it lines up.
-const SAME_PLACE_WITHIN_M: f32 = 0.4;
 
 /// Whether the ball lies outside the field or in a defence area.
 fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {

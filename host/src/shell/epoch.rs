@@ -20,11 +20,11 @@ const FILE_BYTES_MAX: u64 = 16;
 pub struct Epoch {
     /// The epoch, seconds since 1970 or larger.
     pub epoch: u32,
-    /// It could not be stored, or the clock is behind.
+    /// Text if it could not be stored, or the clock is behind.
     pub warning: Option<String>,
 }
 
-/// Where this user's programs keep state that must survive a restart: `$XDG_STATE_HOME/onetwo`, or
+/// Directory of this user's state that must survive a restart: `$XDG_STATE_HOME/onetwo`, or
 /// `~/.local/state/onetwo`.
 pub fn state_directory() -> Option<PathBuf> {
     let absolute = |name| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());

@@ -70,7 +70,7 @@ pub enum LinkError {
     GivesUp {
         /// The robot's number in our team.
         robot: u8,
-        /// Its last exit status.
+        /// Last exit status of its process.
         how: String,
         /// Number of exits in a row.
         times: u32,

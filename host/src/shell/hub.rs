@@ -67,7 +67,7 @@ impl Hub {
         Ok(Self { address, end, threads })
     }
 
-    /// Where robots' processes send commands for the simulator.
+    /// Address to which robots' processes send commands for the simulator.
     pub(super) fn address(&self) -> SocketAddr {
         self.address
     }

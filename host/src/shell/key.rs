@@ -33,7 +33,7 @@ pub enum KeyError {
         /// The operating system's error.
         error: std::io::Error,
     },
-    /// It does not hold 32 hexadecimal digits.
+    /// A file that does not hold 32 hexadecimal digits.
     #[error(
         "the key file {} holds {what}; it must hold 32 hexadecimal digits and nothing else, as `openssl rand -hex 16` \
          makes them",
@@ -42,7 +42,7 @@ pub enum KeyError {
     Malformed {
         /// Path of the file.
         path: PathBuf,
-        /// Its content by kind; never its text.
+        /// Content of the file by kind; never its text.
         what: String,
     },
 }

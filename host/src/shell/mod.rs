@@ -36,7 +36,7 @@ pub trait Link: Send {
     /// The next frame received, waiting for at most `wait`; `None` where none came.
     fn receive(&mut self, wait: Duration) -> Result<Option<Packet>, LinkError>;
 
-    /// How beacons must be forwarded over such a link.
+    /// Forwarding of beacons that such a link needs.
     fn relay(&self) -> Relay;
 
     /// A message to the operator, each once: a robot's process that ended, a line that came back.
@@ -57,11 +57,11 @@ pub trait Link: Send {
         None
     }
 
-    /// What to check where no robot is received.
+    /// Advice where no robot is received.
     fn advice(&self) -> String;
 }
 
-/// How fast a line is.
+/// Rate of a serial line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineRate {
     /// The line's device, such as `/dev/ttyUSB0`.

@@ -44,7 +44,7 @@ pub struct Outbox {
 pub struct OutCounts {
     /// Number of snapshots added.
     pub snapshots: u64,
-    /// Of these, replaced by newer ones before their sending started.
+    /// Snapshots replaced by newer ones before their sending started.
     pub superseded: u64,
     /// Side frames replaced by newer ones, or dropped because too many waited.
     pub side_dropped: u64,

@@ -23,6 +23,8 @@ const WRITE_MAX: Duration = Duration::from_millis(10);
 const BUFFERED_TIME: Duration = Duration::from_millis(3);
 /// Interval of reports that the line takes less than its rate.
 const STUCK_REPORT_EVERY: Duration = Duration::from_secs(10);
+/// Bytes taken from the system at once.
+const READ_LEN: usize = 1024;
 
 /// A base station at a serial line.
 #[derive(Debug)]
@@ -174,9 +176,6 @@ impl Link for SerialLink {
         )
     }
 }
-
-/// Bytes taken from the system at once.
-const READ_LEN: usize = 1024;
 
 fn why(device: &str, error: io::Error) -> LinkError {
     let device = device.to_owned();

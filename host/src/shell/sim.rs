@@ -32,7 +32,7 @@ const FAILED_WITHIN: Duration = Duration::from_secs(3);
 /// Interval of checks whether all processes run.
 const CHECK_EVERY: Duration = Duration::from_millis(100);
 
-/// Which robots to start, and how.
+/// Virtual robots to start, and their program.
 #[derive(Clone, Debug)]
 pub struct SimSettings {
     /// The program that has the verb `virtual-robot`; usually this one.
@@ -43,7 +43,7 @@ pub struct SimSettings {
     pub league: League,
     /// Numbers of the robots to start.
     pub robots: Vec<RobotId>,
-    /// Where the simulator takes our robots' commands: port 10301 for blue, 10302 for yellow.
+    /// Address at which the simulator takes our robots' commands: port 10301 for blue, 10302 for yellow.
     pub simulator: SocketAddr,
     /// The team's key, sent to each process.
     pub key: TeamKey,

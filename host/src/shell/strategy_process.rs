@@ -9,6 +9,15 @@ use std::time::{Duration, Instant};
 
 use crate::external::{StrategyLink, StrategyStarter};
 
+/// Longest time for an answer where nothing runs in real time: a program that plans for longer is stuck.
+const ANSWER_WAIT_MAX: Duration = Duration::from_secs(5);
+/// A program that ended is started again after this time.
+const RESTART_AFTER: Duration = Duration::from_millis(500);
+/// Longest line of an answer, bytes: 16 orders of 200.
+const LINE_BYTES_MAX: u64 = 64 * 1024;
+/// Answers that wait to be read.
+const ANSWERS_KEPT: usize = 8;
+
 /// A strategy's program and its pipes.
 #[derive(Debug)]
 pub struct StrategyProcess {
@@ -43,12 +52,12 @@ impl StrategyProcess {
         StrategyStarter::new(command, move || Ok(Box::new(Self::start(&own, ANSWER_WAIT_MAX)?)))
     }
 
-    /// How often it was started.
+    /// Number of starts of the process.
     pub fn starts(&self) -> u32 {
         self.starts
     }
 
-    /// Its process, while it runs.
+    /// Identifier of the process, while it runs.
     pub fn id(&self) -> Option<u32> {
         self.running.as_ref().map(|running| running.child.id())
     }
@@ -120,15 +129,6 @@ fn read(output: impl io::Read, send: &SyncSender<String>) {
         }
     }
 }
-
-/// Longest time for an answer where nothing runs in real time: a program that plans for longer is stuck.
-const ANSWER_WAIT_MAX: Duration = Duration::from_secs(5);
-/// A program that ended is started again after this time.
-const RESTART_AFTER: Duration = Duration::from_millis(500);
-/// Longest line of an answer, bytes: 16 orders of 200.
-const LINE_BYTES_MAX: u64 = 64 * 1024;
-/// Answers that wait to be read.
-const ANSWERS_KEPT: usize = 8;
 
 #[cfg(test)]
 mod tests {

@@ -11,6 +11,9 @@ use protocol::link::Packet;
 use super::{Link, LinkError};
 use crate::radio::{Relay, To};
 
+/// The shortest wait that a socket accepts.
+const WAIT_MIN: Duration = Duration::from_micros(1);
+
 /// A socket that sends to one address and receives from all; the frames are authenticated by their tags.
 #[derive(Debug)]
 pub struct UdpLink {
@@ -92,9 +95,6 @@ fn passes(kind: io::ErrorKind) -> bool {
     use io::ErrorKind::{ConnectionRefused, ConnectionReset, Interrupted, TimedOut, WouldBlock};
     matches!(kind, ConnectionRefused | ConnectionReset | Interrupted | TimedOut | WouldBlock)
 }
-
-/// The shortest wait that a socket accepts.
-const WAIT_MIN: Duration = Duration::from_micros(1);
 
 #[cfg(test)]
 mod tests {

@@ -15,6 +15,30 @@ use super::order::{Order, OrderReason, Role, Task};
 use super::restart;
 use super::view::{ROBOTS_MAX, View, ViewRobot};
 
+/// Fewer robots of ours must have been allowed on the field for this time before one comes back: a robot that
+/// vision lost for a moment calls none back.
+const RETURN_AFTER: Duration = Duration::millis(1000);
+/// Places on both sides together, at most.
+const PLACES_MAX: usize = 32;
+/// From one waiting robot's centre to the next one's, m: two radii and room for a robot handler's hand.
+const SPACING_M: f32 = 0.25;
+/// Places on each side at a penalty.
+const PENALTY_PLACES_BESIDE: usize = 4;
+/// From the goal's wall or the defence area to the first place, m: room for defenders.
+const BESIDE_AREA_M: f32 = 0.35;
+/// From the field's wall to a robot's side, m: the accuracy with which robots stop.
+const FROM_WALL_M: f32 = 0.05;
+/// From the halfway line, m: the controller counts a robot nearer than its radius as in the other half.
+const FROM_HALFWAY_LINE_M: f32 = 0.3;
+/// Behind the ball at a penalty, m: the rules' 1 m, a body and a margin.
+const BEHIND_PENALTY_M: f32 = 1.3;
+/// Cost of replacing the robot that goes for the ball, in m of path.
+const BALL_PLAYER_COST_M: f32 = 20.0;
+/// The same for a robot that plays a case.
+const CASE_PLAYER_COST_M: f32 = 5.0;
+/// Longer than every path out of the field, m: twice division A's diagonal.
+const PATH_MAX_M: f32 = 30.0;
+
 /// The robots that have left, or are leaving.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bench {
@@ -91,7 +115,7 @@ fn leaving_cost(view: &View, robot: &ViewRobot, first: Option<RobotId>, places: 
     out.min(PATH_MAX_M) + busy + plays
 }
 
-/// Where robots may wait now, off the ball and clear of a placement.
+/// Places where robots may wait now, off the ball and clear of a placement.
 fn waiting_places(view: &View) -> heapless::Vec<Point<Attack>, PLACES_MAX> {
     let (half_length, touch) = (view.field.length * 0.5, view.field.width * 0.5);
     let penalty = match view.phase {
@@ -132,30 +156,6 @@ fn waiting_places(view: &View) -> heapless::Vec<Point<Attack>, PLACES_MAX> {
     let clear = |at: &Point<Attack>| restart::kept_off(view, *at) == *at;
     both.filter(clear).collect()
 }
-
-/// Fewer robots of ours must have been allowed on the field for this time before one comes back: a robot that
-/// vision lost for a moment calls none back.
-const RETURN_AFTER: Duration = Duration::millis(1000);
-/// Places on both sides together, at most.
-const PLACES_MAX: usize = 32;
-/// From one waiting robot's centre to the next one's, m: two radii and room for a robot handler's hand.
-const SPACING_M: f32 = 0.25;
-/// Places on each side at a penalty.
-const PENALTY_PLACES_BESIDE: usize = 4;
-/// From the goal's wall or the defence area to the first place, m: room for defenders.
-const BESIDE_AREA_M: f32 = 0.35;
-/// From the field's wall to a robot's side, m: the accuracy with which robots stop.
-const FROM_WALL_M: f32 = 0.05;
-/// From the halfway line, m: the controller counts a robot nearer than its radius as in the other half.
-const FROM_HALFWAY_LINE_M: f32 = 0.3;
-/// Behind the ball at a penalty, m: the rules' 1 m, a body and a margin.
-const BEHIND_PENALTY_M: f32 = 1.3;
-/// Cost of replacing the robot that goes for the ball, in m of path.
-const BALL_PLAYER_COST_M: f32 = 20.0;
-/// The same for a robot that plays a case.
-const CASE_PLAYER_COST_M: f32 = 5.0;
-/// Longer than every path out of the field, m: twice division A's diagonal.
-const PATH_MAX_M: f32 = 30.0;
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,5 @@
-//! `case_candidate`: the case that our robots would retrieve for a ball at a place, with its next step: one of the
-//! actions that the rated list compares. Attack frame, m.
+//! `case_candidate`: the case that our robots would retrieve for a ball at a place, with its next step: one
+//! of the actions that the rated list compares. Attack frame, m.
 
 use casebase::{CaseBase, LegKind, Problem, RetrievalSettings};
 use geometry::{Attack, Point};
@@ -9,6 +9,9 @@ use protocol::{CaseId, RobotId};
 
 use super::view::View;
 
+/// A kick that ends this near the goal line is a shot, m: cases shoot at the line itself, in whole mm.
+const SHOT_ENDS_WITHIN_M: f32 = 0.01;
+
 /// A case, and our robots that play it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CastCase {
@@ -16,7 +19,7 @@ pub struct CastCase {
     pub case: CaseId,
     /// Case robot i is played by entry i.
     pub robots: [Option<RobotId>; CASE_ROBOTS_MAX],
-    /// What it does first with the ball.
+    /// First thing that the case does with the ball.
     pub step: CaseStep,
 }
 
@@ -25,21 +28,21 @@ pub struct CastCase {
 pub enum CaseStep {
     /// A pass to a robot of the case.
     Pass {
-        /// Where the ball is kicked.
+        /// Place where the ball is kicked, m.
         from: Point<Attack>,
         /// The teammate that receives it.
         receiver: RobotId,
-        /// Where it is received.
+        /// Place of the reception, m.
         at: Point<Attack>,
     },
     /// A kick at the goal.
     Shot {
-        /// Where the ball is kicked.
+        /// Place where the ball is kicked, m.
         from: Point<Attack>,
     },
     /// A kick that ends on the field, without a receiver.
     Kick {
-        /// Where the ball stops.
+        /// Place where the ball stops, m.
         to: Point<Attack>,
     },
     /// The ball is not kicked.
@@ -106,9 +109,6 @@ pub fn retrieve(
     };
     Some(CastCase { case: found.case, robots, step })
 }
-
-/// A kick that ends this near the goal line is a shot, m: cases shoot at the line itself, in whole mm.
-const SHOT_ENDS_WITHIN_M: f32 = 0.01;
 
 #[cfg(test)]
 mod tests {

@@ -29,7 +29,7 @@ pub struct Sent {
     pub conditions: [f32; 5],
     /// Distance of the opponent nearest to x0, m.
     pub pressed: f32,
-    /// It ends a plan of the Coerce and Attack Planner; whether its receiver coerced before.
+    /// Whether the receiver coerced before, if it ends a plan of the Coerce and Attack Planner.
     pub planned: Option<bool>,
 }
 

@@ -7,6 +7,53 @@ use protocol::host::KickOrder;
 use super::order::{OrderReason, Task};
 use super::view::{View, ViewBall, nearest};
 
+/// The keeper's line lies this far before the goal line, m: a body, so that the posts do not stop it.
+const KEEPER_OUT_M: f32 = 0.15;
+/// A ball slower than this can be kicked without stopping it, m/s.
+pub(super) const LYING_SPEED_MAX_M_S: f32 = 0.8;
+/// A ball lower than this can be kicked, m: below a robot's height.
+const GROUND_HEIGHT_MAX_M: f32 = 0.1;
+/// Distance of a clearance to the wing ahead of the ball, m.
+const CLEAR_AHEAD_M: f32 = 2.5;
+/// A clearance from before the area turns from straight out by this much, rad: 30°.
+const CLEAR_TURN_RAD: f32 = core::f32::consts::FRAC_PI_6;
+/// Number of directions in which a field player may clear to either side, in steps of [`CLEAR_STEP_DEG`]
+/// degrees: up to 105° from straight out.
+const CLEAR_TURNS: i16 = 7;
+const CLEAR_STEP_DEG: f32 = 15.0;
+/// A step must gain more room than this, m.
+const CLEAR_TURN_COST_M: f32 = 0.02;
+/// Room that must be gained per metre of additional path to where it lines up.
+const CLEAR_PATH_COST: f32 = 0.6;
+/// Two robots side by side, m.
+const BODIES_APART_M: f32 = 0.2;
+/// A robot's centre is this far behind the ball where it lines up, m (`brain`'s get_ball).
+const LINES_UP_BEHIND_M: f32 = 0.165;
+/// Distance inside the side line, m.
+const CLEAR_INSIDE_M: f32 = 0.6;
+/// A clearance to a teammate nearer than this is not tried, m.
+const CLEAR_LENGTH_MIN_M: f32 = 1.2;
+/// From this room on the ball is kicked along the ground, m: an opponent's reach in the half second that it
+/// takes.
+const ROOM_FOR_FLAT_M: f32 = 0.35;
+/// cm/s, 3-D: at 45° the first hop is v²/g = 1.6 m.
+const CLEAR_CHIP_CM_S: u16 = 400;
+/// Room above this gives no further value, m.
+const ROOM_ENOUGH_M: f32 = 1.0;
+/// The ball counts as at least this far before our goal line when defenders place themselves, m.
+const BALL_AHEAD_MIN_M: f32 = 0.15;
+/// Defenders' centres stand this far outside the area, m: a body (0.09) and the error of tracking and
+/// control.
+pub const EDGE: f32 = 0.13;
+/// Each of two defenders stands this far beside the line, m: bodies side by side, with a margin between.
+const BESIDE_LINE_M: f32 = 0.105;
+/// Opponents beyond this are not marked, m: in their own half.
+const MARK_UP_TO_X_M: f32 = 0.5;
+/// A marker stands this far from its opponent, m: two bodies and room to brake.
+const MARK_OFF_M: f32 = 0.35;
+/// An opponent this near the ball plays it: the wall and the defenders cover it, m.
+const PLAYS_BALL_WITHIN_M: f32 = 0.4;
+
 /// The line on which the keeper blocks the ball: before the opening of our goal, post to post.
 pub fn keeper_line(view: &View) -> Task {
     let (x, half) = (view.our_goal().x() + KEEPER_OUT_M, view.field.goal_width * 0.5);
@@ -30,7 +77,7 @@ pub fn keeper(view: &View) -> (Task, OrderReason) {
     (keeper_line(view), OrderReason::OnBallLine { y: crossing(view, &ball) })
 }
 
-/// Where the ball's path would cross our goal line, or the ball's line to the middle while it does not come.
+/// Crossing of the ball's path and our goal line, or the ball's line to the middle while it does not come.
 fn crossing(view: &View, ball: &ViewBall) -> f32 {
     let (goal, v) = (view.our_goal(), ball.velocity);
     if v.x() < -LYING_SPEED_MAX_M_S {
@@ -189,7 +236,8 @@ impl Edge {
     }
 }
 
-/// Where the ray from our goal's middle leaves our area, grown by the distance that keeps a robot outside.
+/// Place where the ray from our goal's middle leaves our area, grown by the distance that keeps a robot
+/// outside.
 fn at_edge(view: &View, direction: Vector<Attack>) -> Point<Attack> {
     let (depth, half) = (view.field.penalty_depth + EDGE, view.field.penalty_width * 0.5 + EDGE);
     let (x, y) = (direction.x().max(1e-3), direction.y());
@@ -225,53 +273,6 @@ pub fn contested(view: &View, ours: f32) -> bool {
     nearest(view.theirs.iter(), ball.rest)
         .is_some_and(|(robot, _)| super::roles::time_to(robot, ball.rest) < ours)
 }
-
-/// The keeper's line lies this far before the goal line, m: a body, so that the posts do not stop it.
-const KEEPER_OUT_M: f32 = 0.15;
-/// A ball slower than this can be kicked without stopping it, m/s.
-pub(super) const LYING_SPEED_MAX_M_S: f32 = 0.8;
-/// A ball lower than this can be kicked, m: below a robot's height.
-const GROUND_HEIGHT_MAX_M: f32 = 0.1;
-/// Distance of a clearance to the wing ahead of the ball, m.
-const CLEAR_AHEAD_M: f32 = 2.5;
-/// A clearance from before the area turns from straight out by this much, rad: 30°.
-const CLEAR_TURN_RAD: f32 = core::f32::consts::FRAC_PI_6;
-/// Number of directions in which a field player may clear to either side, in steps of [`CLEAR_STEP_DEG`]
-/// degrees: up to 105° from straight out.
-const CLEAR_TURNS: i16 = 7;
-const CLEAR_STEP_DEG: f32 = 15.0;
-/// A step must gain more room than this, m.
-const CLEAR_TURN_COST_M: f32 = 0.02;
-/// Room that must be gained per metre of additional path to where it lines up.
-const CLEAR_PATH_COST: f32 = 0.6;
-/// Two robots side by side, m.
-const BODIES_APART_M: f32 = 0.2;
-/// A robot's centre is this far behind the ball where it lines up, m (`brain`'s get_ball).
-const LINES_UP_BEHIND_M: f32 = 0.165;
-/// Distance inside the side line, m.
-const CLEAR_INSIDE_M: f32 = 0.6;
-/// A clearance to a teammate nearer than this is not tried, m.
-const CLEAR_LENGTH_MIN_M: f32 = 1.2;
-/// From this room on the ball is kicked along the ground, m: an opponent's reach in the half second that it
-/// takes.
-const ROOM_FOR_FLAT_M: f32 = 0.35;
-/// cm/s, 3-D: at 45° the first hop is v²/g = 1.6 m.
-const CLEAR_CHIP_CM_S: u16 = 400;
-/// Room above this gives no further value, m.
-const ROOM_ENOUGH_M: f32 = 1.0;
-/// The ball counts as at least this far before our goal line when defenders place themselves, m.
-const BALL_AHEAD_MIN_M: f32 = 0.15;
-/// Defenders' centres stand this far outside the area, m: a body (0.09) and the error of tracking and
-/// control.
-pub const EDGE: f32 = 0.13;
-/// Each of two defenders stands this far beside the line, m: bodies side by side, with a margin between.
-const BESIDE_LINE_M: f32 = 0.105;
-/// Opponents beyond this are not marked, m: in their own half.
-const MARK_UP_TO_X_M: f32 = 0.5;
-/// A marker stands this far from its opponent, m: two bodies and room to brake.
-const MARK_OFF_M: f32 = 0.35;
-/// An opponent this near the ball plays it: the wall and the defenders cover it, m.
-const PLAYS_BALL_WITHIN_M: f32 = 0.4;
 
 #[cfg(test)]
 mod tests {

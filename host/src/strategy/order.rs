@@ -17,9 +17,9 @@ use super::view::Flip;
 pub struct Order {
     /// Our robot, by its number.
     pub robot: RobotId,
-    /// Its role in the team.
+    /// Role of the robot in the team.
     pub role: Role,
-    /// Its task, in the attack frame.
+    /// Task of the robot, in the attack frame.
     pub task: Task,
     /// Reason of role and task, with its numbers.
     pub why: OrderReason,
@@ -64,7 +64,7 @@ pub enum OrderReason {
     },
     /// On the line from the ball to our goal.
     OnBallLine {
-        /// Where that line crosses the goal line, m.
+        /// Crossing of that line and the goal line, m.
         y: f32,
     },
     /// The ball lies in our area and only the keeper may touch it.
@@ -87,7 +87,7 @@ pub enum OrderReason {
         /// Room along the path of the ball, m.
         room: f32,
     },
-    /// Its part in the defence against threats.
+    /// Part of the robot in the defence against threats.
     Threat(Guards),
     /// The likeliest pass found, with its probabilities.
     Chances {
@@ -173,7 +173,7 @@ pub enum Task {
     },
     /// Pass to a teammate.
     Pass {
-        /// Where it will receive the ball.
+        /// Place of the reception, m.
         at: Point<Attack>,
         /// Number of the receiving teammate.
         receiver: RobotId,

@@ -13,7 +13,24 @@ use rules::contact;
 use super::pass::reach::Mover;
 use super::view::{RobotSet, View, ViewBall, ViewRobot, nearest};
 
-/// Who has the ball.
+/// Half the width of the dribbler opening, m: front plates are 0.12 to 0.16 wide.
+const OPENING_HALF_M: f32 = 0.06;
+/// A robot that has the ball keeps it while that is this much farther off, m: a ball bounces off the roller.
+const KEPT_MARGIN_M: f32 = 0.03;
+/// A ball felt by the sensor of a robot is at most this far from its centre, m: cameras err by less.
+const FELT_WITHIN_M: f32 = 0.16;
+/// A ball that passes a robot is faster than this against it, m/s.
+const RELATIVE_SPEED_MAX_M_S: f32 = 1.0;
+/// A slower ball rests, m/s.
+const RESTING_SPEED_MAX_M_S: f32 = 0.2;
+/// From the ball to the centre of a robot behind it, m.
+const BEHIND_BALL_M: f32 = contact::TOUCHES_WITHIN;
+/// Steps along the ball's path, s.
+const TIME_STEP_S: f32 = 0.05;
+/// Cost of moving around a ball, s: half a circle of 0.2 m radius at moderate speed (estimate).
+const AROUND_BALL_COST_S: f32 = 0.4;
+
+/// Possession of the ball by robots.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Possession {
     /// No robot has the ball.
@@ -28,7 +45,7 @@ pub enum Possession {
 }
 
 impl Possession {
-    /// Who has it at this moment, after `self`; `contact` lists our robots whose sensors feel it.
+    /// Possession at this moment, after `self`; `contact` lists our robots whose sensors feel it.
     pub fn next(self, view: &View, contact: RobotSet) -> Self {
         let Some(ball) = view.ball else { return Self::Free };
         let held = match self {
@@ -81,12 +98,12 @@ fn has(robot: &ViewRobot, ball: &ViewBall, margin: f32) -> bool {
         && (ball.velocity - robot.velocity).norm() < RELATIVE_SPEED_MAX_M_S
 }
 
-/// Where and when a robot can play the ball.
+/// Place and time at which a robot can play the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
     /// Time until it is behind the ball, s.
     pub seconds: f32,
-    /// Where the ball is then.
+    /// Place of the ball then, m.
     pub ball: Point<Attack>,
 }
 
@@ -129,23 +146,6 @@ pub fn arrival(
     let there = mover.time_to(at - aim * BEHIND_BALL_M) + around;
     Arrival { seconds: there.max(if speed > RESTING_SPEED_MAX_M_S { time } else { 0.0 }), ball: at }
 }
-
-/// Half the width of the dribbler opening, m: front plates are 0.12 to 0.16 wide.
-const OPENING_HALF_M: f32 = 0.06;
-/// A robot that has the ball keeps it while that is this much farther off, m: a ball bounces off the roller.
-const KEPT_MARGIN_M: f32 = 0.03;
-/// A ball felt by the sensor of a robot is at most this far from its centre, m: cameras err by less.
-const FELT_WITHIN_M: f32 = 0.16;
-/// A ball that passes a robot is faster than this against it, m/s.
-const RELATIVE_SPEED_MAX_M_S: f32 = 1.0;
-/// A slower ball rests, m/s.
-const RESTING_SPEED_MAX_M_S: f32 = 0.2;
-/// From the ball to the centre of a robot behind it, m.
-const BEHIND_BALL_M: f32 = contact::TOUCHES_WITHIN;
-/// Steps along the ball's path, s.
-const TIME_STEP_S: f32 = 0.05;
-/// Cost of moving around a ball, s: half a circle of 0.2 m radius at moderate speed (estimate).
-const AROUND_BALL_COST_S: f32 = 0.4;
 
 #[cfg(test)]
 mod tests {

@@ -17,6 +17,13 @@ use super::pass::shot::shot;
 use super::pass::{Kicks, Offer, PassScene, PassSearch, Rating};
 use super::view::{CasePass, ROBOTS_MAX, View};
 
+/// An opponent this near the ball, m, disputes it, or presses its owner.
+const CONTESTED_WITHIN_M: f32 = 0.25;
+const PRESSED_WITHIN_M: f32 = 0.7;
+const LOST_SHARE_CONTESTED: f32 = 0.4;
+const LOST_SHARE_PRESSED: f32 = 0.2;
+const LOST_SHARE_FREE: f32 = 0.0;
+
 /// An action of the robot with the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
@@ -45,7 +52,7 @@ pub enum Action {
     },
     /// The case that the robots would retrieve.
     Case(CastCase),
-    /// To keep the ball: by the case that is played, or by what the robots do without one.
+    /// Keeping the ball: by the case that is played, or by what the robots do without one.
     PlayOn,
 }
 
@@ -102,7 +109,7 @@ impl fmt::Display for Rated {
     }
 }
 
-/// What cases propose to the robot that plays the ball.
+/// Proposals of cases to the robot that plays the ball.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OfCases {
     /// The next pass of the case that it plays.
@@ -250,13 +257,6 @@ fn lost(view: &View, from: Point<Attack>) -> f32 {
         LOST_SHARE_FREE
     }
 }
-
-/// An opponent this near the ball, m, disputes it, or presses its owner.
-const CONTESTED_WITHIN_M: f32 = 0.25;
-const PRESSED_WITHIN_M: f32 = 0.7;
-const LOST_SHARE_CONTESTED: f32 = 0.4;
-const LOST_SHARE_PRESSED: f32 = 0.2;
-const LOST_SHARE_FREE: f32 = 0.0;
 
 #[cfg(test)]
 mod tests {

@@ -36,6 +36,8 @@ const KICKOFF_BESIDE_M: f32 = 0.35;
 /// Distance of other field players from the halfway line at kick-off, m: far enough from an opponent to
 /// receive a pass.
 const KICKOFF_BACK_M: f32 = 0.9;
+/// A robot reaches a ball this far beyond the field surface's edge, m: as the league's simulators let one be.
+const REACH_BEYOND_EDGE_M: f32 = 0.03;
 
 /// Waiting place of our kicker for its restart from `ball`: behind it, as seen from their goal.
 pub fn kicker_waits(view: &View, ball: Point<Attack>) -> Point<Attack> {
@@ -92,7 +94,7 @@ pub fn penalty_spot(view: &View, ours: bool) -> Point<Attack> {
     view.placement.or_else(|| lies_at(view, mark)).unwrap_or(mark)
 }
 
-/// Where our kick-off is taken from, likewise.
+/// Place from which our kick-off is taken, likewise.
 pub fn kickoff_spot(view: &View) -> Point<Attack> {
     let mark = Point::default();
     view.placement.or_else(|| lies_at(view, mark)).unwrap_or(mark)
@@ -133,9 +135,6 @@ pub fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {
         || ball.y().abs() - field.width * 0.5 > field.margin + REACH_BEYOND_EDGE_M;
     hidden || off
 }
-
-/// A robot reaches a ball this far beyond the field surface's edge, m: as the league's simulators let one be.
-const REACH_BEYOND_EDGE_M: f32 = 0.03;
 
 /// `at`, moved out of the circle around the ball that no robot may enter, and off the path of a ball being
 /// placed.

@@ -11,6 +11,16 @@ use rules::RobotSpec;
 
 use super::view::{View, ViewRobot};
 
+/// Time by which another robot must be there sooner to take over a role, s: the time in which a robot brakes
+/// and turns.
+pub const WORTH: f32 = 0.4;
+/// Speed of a moving robot, m/s.
+const TYPICAL_SPEED: f32 = RobotSpec::OURS.assumed.role.speed;
+/// Acceleration of a moving robot, m/s².
+const TYPICAL_ACCELERATION: f32 = RobotSpec::OURS.assumed.role.acceleration;
+/// Time lost in speeding up and braking, s: v/a with the two above.
+const SPEEDING_UP_S: f32 = 0.65;
+
 /// The robots that have the roles, held until a change is worth it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RoleMemory {
@@ -79,16 +89,6 @@ pub fn assign<const N: usize>(
     }
     taken
 }
-
-/// Time by which another robot must be there sooner to take over a role, s: the time in which a robot brakes
-/// and turns.
-pub const WORTH: f32 = 0.4;
-/// Speed of a moving robot, m/s.
-const TYPICAL_SPEED: f32 = RobotSpec::OURS.assumed.role.speed;
-/// Acceleration of a moving robot, m/s².
-const TYPICAL_ACCELERATION: f32 = RobotSpec::OURS.assumed.role.acceleration;
-/// Time lost in speeding up and braking, s: v/a with the two above.
-const SPEEDING_UP_S: f32 = 0.65;
 
 #[cfg(test)]
 mod tests {

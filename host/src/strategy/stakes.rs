@@ -10,12 +10,21 @@ use geometry::math;
 use rules::limits;
 use rules::state::Stage;
 
+/// Goals of a team a second: 3.1 and 3.4 in 600 s, our team against itself in 40 matches (docs/strategy.md).
+const GOALS_PER_S: f32 = (3.1 + 3.4) / (2.0 * 600.0);
+/// Numbers of goals that are told apart, from 0: in 600 s more than 15 come with P < 10⁻⁶.
+const GOAL_COUNTS: usize = 16;
+/// A goal of either team moves the result by less than this together: the match is decided.
+const DECIDED_BELOW: f32 = 0.02;
+/// Least worth of a goal, so that neither kind is ever given away.
+const WORTH_MIN: f32 = 0.2;
+
 /// Relative worths of a goal for us and a goal against us; their mean is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stakes {
-    /// Of a goal for us.
+    /// Worth of a goal for us.
     pub ours: f32,
-    /// Of a goal against us.
+    /// Worth of a goal against us.
     pub theirs: f32,
 }
 
@@ -26,7 +35,7 @@ impl Default for Stakes {
 }
 
 impl Stakes {
-    /// Both are worth the same.
+    /// Worths of a level score: both the same.
     pub const EVEN: Self = Self { ours: 1.0, theirs: 1.0 };
 
     /// With `ahead` goals more than the opponents (negative: fewer) and `left` s to play.
@@ -87,15 +96,6 @@ impl Results {
         result
     }
 }
-
-/// Goals of a team a second: 3.1 and 3.4 in 600 s, our team against itself in 40 matches (docs/strategy.md).
-const GOALS_PER_S: f32 = (3.1 + 3.4) / (2.0 * 600.0);
-/// Numbers of goals that are told apart, from 0: in 600 s more than 15 come with P < 10⁻⁶.
-const GOAL_COUNTS: usize = 16;
-/// A goal of either team moves the result by less than this together: the match is decided.
-const DECIDED_BELOW: f32 = 0.02;
-/// Least worth of a goal, so that neither kind is ever given away.
-const WORTH_MIN: f32 = 0.2;
 
 #[cfg(test)]
 mod tests {

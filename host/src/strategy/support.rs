@@ -10,6 +10,46 @@ use super::defence::room_along;
 use super::pass::{Kicks, PassScene};
 use super::view::{ROBOTS_MAX, View, ViewRobot};
 
+/// A shot, cm/s: as fast as the rules allow, less a kicker's error.
+pub const SHOT: KickOrder = KickOrder::Flat(620);
+const GRID: (usize, usize) = (12, 7);
+/// Least distance between teammates, m.
+const PLACES_APART_M: f32 = 1.2;
+/// A place this near to where a supporter stood, m, counts more by this factor.
+const STOOD_WITHIN_M: f32 = 0.5;
+const STOOD_FACTOR: f32 = 1.2;
+/// Room above this gives no further value, m.
+const ROOM_ENOUGH_M: f32 = 0.7;
+/// Supporters stay this far off the areas, m: the rules' 0.2 m, a body and as much margin.
+const OFF_AREAS_M: f32 = 0.4;
+/// Shorter passes gain nothing, longer ones are intercepted by other robots, m.
+const PASS_LENGTH_MIN_M: f32 = 1.0;
+const PASS_LENGTH_MAX_M: f32 = 5.0;
+/// A pass may go back this far, m.
+const PASS_BACK_MAX_M: f32 = 1.0;
+/// Least room beside the path of a shot, m: bodies of robot and ball (0.11) and the distance a keeper covers
+/// while it flies.
+const SHOT_ROOM_MIN_M: f32 = 0.2;
+/// Bodies of robot and ball, m: with less than this beside its path the ball hits a robot.
+const BODIES_ROOM_M: f32 = 0.12;
+/// A teammate nearer to a line than this is no receiver, m: a ball that it misses is out.
+const INSIDE_LINES_M: f32 = 0.3;
+/// Farther shots are caught, m.
+const SHOT_LENGTH_MAX_M: f32 = 4.0;
+/// With the ball far ahead the grid of places starts here, m: short of the halfway line.
+const GRID_FROM_X_MAX_M: f32 = -0.5;
+/// Below this value a pass is not played, 0–1.
+const PASS_WORTH_MIN: f32 = 0.2;
+/// Shots are aimed this far inside the posts, m: twice the ball's radius, and the scatter of a kick.
+const INSIDE_POST_M: f32 = 0.08;
+/// Number of points of the goal tried.
+const GOAL_POINTS: usize = 9;
+/// A receiver can control a ball of this speed, m/s; one that it misses rolls 2 m farther (v²/0.7), not off
+/// the field.
+const ARRIVAL_SPEED_M_S: f32 = 1.2;
+/// Speed that counts as stopped, m/s.
+const STOPPED_SPEED_M_S: f32 = 0.2;
+
 /// Places for teammates of a robot with the ball at `ball`, best first, apart from each other; with their
 /// value, 0–1.
 pub fn places(
@@ -114,7 +154,7 @@ pub enum Target {
     Teammate {
         /// Number of the teammate.
         id: RobotId,
-        /// Where it receives the ball, m.
+        /// Place of the reception, m.
         at: Point<Attack>,
         /// Room along the path, m.
         room: f32,
@@ -207,47 +247,6 @@ fn flat(distance: f32, arrival: f32) -> KickOrder {
     let speed = BallModel::default().kick_speed(distance, arrival).clamp(1.0, 6.0);
     KickOrder::Flat((speed * 100.0) as u16)
 }
-
-/// A shot, cm/s: as fast as the rules allow, less a kicker's error.
-pub const SHOT: KickOrder = KickOrder::Flat(620);
-
-const GRID: (usize, usize) = (12, 7);
-/// Least distance between teammates, m.
-const PLACES_APART_M: f32 = 1.2;
-/// A place this near to where a supporter stood, m, counts more by this factor.
-const STOOD_WITHIN_M: f32 = 0.5;
-const STOOD_FACTOR: f32 = 1.2;
-/// Room above this gives no further value, m.
-const ROOM_ENOUGH_M: f32 = 0.7;
-/// Supporters stay this far off the areas, m: the rules' 0.2 m, a body and as much margin.
-const OFF_AREAS_M: f32 = 0.4;
-/// Shorter passes gain nothing, longer ones are intercepted by other robots, m.
-const PASS_LENGTH_MIN_M: f32 = 1.0;
-const PASS_LENGTH_MAX_M: f32 = 5.0;
-/// A pass may go back this far, m.
-const PASS_BACK_MAX_M: f32 = 1.0;
-/// Least room beside the path of a shot, m: bodies of robot and ball (0.11) and the distance a keeper covers
-/// while it flies.
-const SHOT_ROOM_MIN_M: f32 = 0.2;
-/// Bodies of robot and ball, m: with less than this beside its path the ball hits a robot.
-const BODIES_ROOM_M: f32 = 0.12;
-/// A teammate nearer to a line than this is no receiver, m: a ball that it misses is out.
-const INSIDE_LINES_M: f32 = 0.3;
-/// Farther shots are caught, m.
-const SHOT_LENGTH_MAX_M: f32 = 4.0;
-/// With the ball far ahead the grid of places starts here, m: short of the halfway line.
-const GRID_FROM_X_MAX_M: f32 = -0.5;
-/// Below this value a pass is not played, 0–1.
-const PASS_WORTH_MIN: f32 = 0.2;
-/// Shots are aimed this far inside the posts, m: twice the ball's radius, and the scatter of a kick.
-const INSIDE_POST_M: f32 = 0.08;
-/// Number of points of the goal tried.
-const GOAL_POINTS: usize = 9;
-/// A receiver can control a ball of this speed, m/s; one that it misses rolls 2 m farther (v²/0.7), not off
-/// the field.
-const ARRIVAL_SPEED_M_S: f32 = 1.2;
-/// Speed that counts as stopped, m/s.
-const STOPPED_SPEED_M_S: f32 = 0.2;
 
 #[cfg(test)]
 mod tests {

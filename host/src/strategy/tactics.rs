@@ -3,6 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// The name of [`Tactics::ROUND_1`].
+pub const ROUND_1: &str = "round-1";
+
 /// What the coach uses beyond rule-compliant play. A part that a recording's header does not name was not
 /// played.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,11 +23,11 @@ pub struct Tactics {
     /// Our free kicks by the Coerce and Attack Planner (§4).
     #[serde(default)]
     pub coerce: bool,
-    /// In open play the robot that is first at the ball shoots or passes by P(goal) where that is worth it;
-    /// else cases are played.
+    /// Shots and passes of open play: the robot first at the ball shoots or passes by P(goal) where that is
+    /// worth it; else cases are played.
     #[serde(default)]
     pub attack: bool,
-    /// Where a case is played, its next pass as refined by pass location and pass-ahead (docs/papers.md §8);
+    /// Passes of the case that is played, as refined by pass location and pass-ahead (docs/papers.md §8);
     /// with `rated`, the case that robots would retrieve is one of the rated actions.
     #[serde(default)]
     pub bridge: bool,
@@ -69,7 +72,7 @@ impl Tactics {
         Self::NONE
     }
 
-    /// As text that [`Tactics::parse`] reads.
+    /// Text that [`Tactics::parse`] reads.
     pub fn description(&self) -> String {
         let Self { threats, second_level, pass_ahead, coerce, attack, bridge, rated, by_score } = *self;
         let named = [
@@ -127,9 +130,6 @@ impl Default for Tactics {
         Self { bridge: true, rated: true, ..Self::ROUND_1 }
     }
 }
-
-/// The name of [`Tactics::ROUND_1`].
-pub const ROUND_1: &str = "round-1";
 
 #[cfg(test)]
 mod tests {

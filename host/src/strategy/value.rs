@@ -10,6 +10,13 @@ use geometry::{Attack, Point, math};
 
 use super::stakes::Stakes;
 
+/// P(goal for) at their goal, and the distance over which it falls to 1/e, m.
+const FOR_AT_GOAL: f32 = 0.24;
+const FOR_FADES_M: f32 = 2.4;
+/// P(goal against) of a ball at our goal, and the distance at which it is 0, m.
+const AGAINST_AT_GOAL: f32 = 0.1;
+const AGAINST_WITHIN_M: f32 = 5.5;
+
 /// Worth of the ball at `at` for the team that has it and attacks towards +x, −1 to 1; `goal_line`: half the
 /// field's length, m.
 pub fn of_ours(goal_line: f32, at: Point<Attack>) -> f32 {
@@ -37,13 +44,6 @@ fn goals(goal_line: f32, at: Point<Attack>) -> (f32, f32) {
         AGAINST_AT_GOAL * (1.0 - at.distance(Point::new(-goal_line, 0.0)) / AGAINST_WITHIN_M).max(0.0);
     (scored, conceded)
 }
-
-/// P(goal for) at their goal, and the distance over which it falls to 1/e, m.
-const FOR_AT_GOAL: f32 = 0.24;
-const FOR_FADES_M: f32 = 2.4;
-/// P(goal against) of a ball at our goal, and the distance at which it is 0, m.
-const AGAINST_AT_GOAL: f32 = 0.1;
-const AGAINST_WITHIN_M: f32 = 5.5;
 
 #[cfg(test)]
 mod tests {

@@ -87,11 +87,11 @@ impl Flip {
 /// The ball, in the attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewBall {
-    /// Its place on the ground.
+    /// Place on the ground, m.
     pub position: Point<Attack>,
     /// Velocity along the ground, m/s.
     pub velocity: Vector<Attack>,
-    /// Its stop position if no robot intercepts it, not cut at lines or walls.
+    /// Stop position if no robot intercepts it, not cut at lines or walls.
     pub rest: Point<Attack>,
     /// Height above the ground, m.
     pub height: f32,
@@ -134,7 +134,7 @@ pub struct ViewGame {
     pub phase: Phase<Side>,
     /// The phase that will start next, if the referee sends it.
     pub next: Option<Phase<Side>>,
-    /// Where the ball is to be placed, while it is.
+    /// Place for the ball during a placement, m.
     pub placement: Option<Point<Field>>,
     /// The goal we defend.
     pub defending: GoalEnd,
@@ -142,7 +142,7 @@ pub struct ViewGame {
     pub keeper: RobotId,
     /// Their keeper's number, by the referee.
     pub their_keeper: RobotId,
-    /// What goals are worth by score and time left; even where the tactics do not ask.
+    /// Worths of goals by score and time left; even where the tactics do not ask.
     pub stakes: Stakes,
 }
 
@@ -155,7 +155,7 @@ pub struct View {
     pub phase: Phase<Side>,
     /// The phase that will start next, if the referee sends it.
     pub next: Option<Phase<Side>>,
-    /// Where the ball is to be placed, while it is.
+    /// Place for the ball during a placement, m.
     pub placement: Option<Point<Attack>>,
     /// The ball, if its place is known.
     pub ball: Option<ViewBall>,
@@ -171,7 +171,7 @@ pub struct View {
     pub keeper: RobotId,
     /// Their keeper's number, by the referee.
     pub their_keeper: RobotId,
-    /// What goals are worth by score and time left.
+    /// Worths of goals by score and time left.
     pub stakes: Stakes,
     /// Number of robots the referee allows us on the field.
     pub allowed: usize,
@@ -313,12 +313,12 @@ impl View {
         Point::new(self.field.length * 0.5, 0.0)
     }
 
-    /// In our defence area, grown by `margin` m.
+    /// Whether a place is in our defence area, grown by `margin` m.
     pub fn in_our_area(&self, p: Point<Attack>, margin: f32) -> bool {
         self.in_area(Point::new(-p.x(), p.y()), margin)
     }
 
-    /// In theirs, grown by `margin` m.
+    /// Whether a place is in their defence area, grown by `margin` m.
     pub fn in_their_area(&self, p: Point<Attack>, margin: f32) -> bool {
         self.in_area(p, margin)
     }

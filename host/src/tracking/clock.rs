@@ -10,6 +10,22 @@ use protocol::{Duration, Instant};
 
 use super::seen::Captured;
 
+/// Frames of one clock are not farther apart without a reason, µs.
+const JUMP_MIN_US: i64 = 1_000_000;
+/// A clock that jumped far is followed when ours has been silent that long, µs: a dozen frames of 60 Hz.
+const SILENCE_AFTER_JUMP_US: i64 = 200_000;
+/// One that jumped back slightly could be late copies of the clock we follow, so it waits longer, µs.
+const SILENCE_AFTER_STEP_US: i64 = 500_000;
+/// Camera frames in order that confirm another clock.
+const FRAMES_TO_BELIEVE: u32 = 5;
+/// Window for the least delay; the last one to two windows count, µs: short enough to follow a simulator that
+/// runs at nine tenths of real time (recorded; off by a tenth of the window at most), long enough to contain
+/// eight frames of a 60 Hz camera.
+const DELAY_WINDOW_US: i64 = 150_000;
+/// Longest time of vision from camera frame to packet, µs; a larger difference is no processing time
+/// (recorded: 0 and 10 ms).
+const PROCESSING_MAX_US: i64 = 250_000;
+
 /// The clock that a time belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Judgement {
@@ -102,7 +118,7 @@ impl Clock {
         }
     }
 
-    /// That moment on our clock.
+    /// The moment `captured` on our clock.
     pub(super) fn ours(&self, captured: Captured) -> Instant {
         let offset = self.least.map_or(0, |[current, last]| current.min(last));
         Instant((captured + offset).max(0) as u64)
@@ -115,22 +131,6 @@ impl Clock {
         self.newest.map_or(Duration(0), delay)
     }
 }
-
-/// Frames of one clock are not farther apart without a reason, µs.
-const JUMP_MIN_US: i64 = 1_000_000;
-/// A clock that jumped far is followed when ours has been silent that long, µs: a dozen frames of 60 Hz.
-const SILENCE_AFTER_JUMP_US: i64 = 200_000;
-/// One that jumped back slightly could be late copies of the clock we follow, so it waits longer, µs.
-const SILENCE_AFTER_STEP_US: i64 = 500_000;
-/// Camera frames in order that confirm another clock.
-const FRAMES_TO_BELIEVE: u32 = 5;
-/// Window for the least delay; the last one to two windows count, µs: short enough to follow a simulator that
-/// runs at nine tenths of real time (recorded; off by a tenth of the window at most), long enough to contain
-/// eight frames of a 60 Hz camera.
-const DELAY_WINDOW_US: i64 = 150_000;
-/// Longest time of vision from camera frame to packet, µs; a larger difference is no processing time
-/// (recorded: 0 and 10 ms).
-const PROCESSING_MAX_US: i64 = 250_000;
 
 #[cfg(test)]
 mod tests {

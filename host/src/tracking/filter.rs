@@ -7,6 +7,15 @@
 
 use geometry::{Angle, Field, Point, Vector, math};
 
+/// Weight of the newest innovation in the average: about the last three count.
+const LAG_SHARE: f32 = 0.3;
+/// Squared averages below this are noise: white innovations give 2 · 0.3 / (2 − 0.3) = 0.35 in the mean.
+const LAG_STEADY: f32 = 1.2;
+/// Squared averages above this are certainly a change (probability exp(−4 / 0.35) by noise).
+const LAG_CHANGING: f32 = 4.0;
+/// Least variance of a speed, against rounding: (1 mm/s)², in (m/s)².
+const SPEED_VARIANCE_MIN: f32 = 1e-6;
+
 /// Process noise of a velocity: white acceleration of this density, m²/s³ (or rad²/s³).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Freedom {
@@ -150,15 +159,6 @@ impl Turning {
         self.rate += off * k_speed;
     }
 }
-
-/// Weight of the newest innovation in the average: about the last three count.
-const LAG_SHARE: f32 = 0.3;
-/// Squared averages below this are noise: white innovations give 2 · 0.3 / (2 − 0.3) = 0.35 in the mean.
-const LAG_STEADY: f32 = 1.2;
-/// Squared averages above this are certainly a change (probability exp(−4 / 0.35) by noise).
-const LAG_CHANGING: f32 = 4.0;
-/// Least variance of a speed, against rounding: (1 mm/s)², in (m/s)².
-const SPEED_VARIANCE_MIN: f32 = 1e-6;
 
 #[cfg(test)]
 mod tests {

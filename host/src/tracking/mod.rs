@@ -72,7 +72,7 @@ pub struct TrackingSettings {
     pub robots: RobotNoise,
     /// Standard deviation of a ball's coordinate, m.
     pub ball: f32,
-    /// How balls move until a geometry packet has models.
+    /// Models of the ball until a geometry packet has some.
     pub models: BallModels,
 }
 
@@ -86,19 +86,19 @@ impl Default for TrackingSettings {
 /// Result of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VisionVerdict {
-    /// It contains no camera frame.
+    /// A packet without a camera frame.
     NoImage,
-    /// It is the newest camera frame.
+    /// The newest camera frame.
     Newest,
-    /// It was inserted before this number of newer ones.
+    /// A frame inserted before this number of newer ones.
     Reordered(usize),
     /// This camera's frame of that moment was there already.
     Repeated,
-    /// It was taken this long before the newest: too old to count.
+    /// A frame taken this long before the newest: too old to count.
     Late(Duration),
-    /// Its time or its camera's number is invalid.
+    /// A frame whose time or camera number is invalid.
     Nonsense,
-    /// It is of another clock than the one followed.
+    /// A frame of another clock than the one followed.
     ForeignClock,
     /// Vision's clock restarted: the state was reset, and this is the first camera frame.
     Restarted,

@@ -8,12 +8,18 @@ use heapless::Vec;
 
 use super::seen::{Captured, Frame};
 
+/// Largest delay of a camera frame, µs: three ticks of a 60 Hz camera. Waiting for older ones changes
+/// decisions already made.
+const LATE_MAX_US: Captured = 50_000;
+/// Camera frames kept: those of eight cameras of 60 Hz within the window.
+const FRAMES_KEPT: usize = 24;
+
 /// Result of inserting a camera frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Placed {
-    /// It is the newest.
+    /// The newest frame.
     Newest,
-    /// It was inserted before this number of newer ones.
+    /// A frame inserted before this number of newer ones.
     Before(usize),
     /// This camera's frame of this moment is there already.
     Repeated,
@@ -101,12 +107,6 @@ impl<S: Copy> Timeline<S> {
         if after == 0 { Placed::Newest } else { Placed::Before(after) }
     }
 }
-
-/// How late a camera frame may be, µs: three ticks of a 60 Hz camera. Waiting for older ones changes
-/// decisions already made.
-const LATE_MAX_US: Captured = 50_000;
-/// Camera frames kept: those of eight cameras of 60 Hz within the window.
-const FRAMES_KEPT: usize = 24;
 
 #[cfg(test)]
 mod tests {

@@ -13,6 +13,42 @@ use super::filter::{Freedom, Plane, Turning};
 use super::seen::{Captured, RobotSeen};
 use crate::world::{Robot, index};
 
+/// Camera frames that confirm a robot: 50 ms of one camera; misread patterns of one or two frames are
+/// excluded.
+const FRAMES_TO_BELIEVE: u16 = 3;
+/// Camera frames after which confidence is full.
+const FRAMES_FULL: u16 = 10;
+/// Detections nearer to each other than this are of one tick (two cameras see the robot), µs.
+const TICK_US: Captured = 5_000;
+/// A robot may be seen this far from its prediction, m: two cameras may disagree by 20 mm each (ER-Force's
+/// "object position offset"), the remainder is margin below a robot's radius.
+const GATE_M: f32 = 0.08;
+/// Growth of that distance for every second unseen, m/s: the fastest robots' speed.
+const GATE_GROWTH_M_S: f32 = 4.0;
+/// Longest time for which that distance grows, s.
+const GATE_TIME_MAX_S: f32 = 0.25;
+/// Within this time a robot was seen "just now", s: six frames of 60 Hz, three of a camera with dropouts.
+const SEEN_LATELY_S: f32 = 0.1;
+/// Two robots' centres are never nearer, m: the smallest hulls have a radius of 0.085 m, half of it is
+/// certainly a misreading.
+const SAME_PLACE_WITHIN_M: f32 = 0.09;
+/// An unseen robot is extrapolated straight on for this time, s, then assumed to stand still.
+const COASTS_FOR_S: f32 = 0.25;
+/// Time unseen after which a robot is forgotten, s.
+const FORGOTTEN_AFTER_S: f32 = 1.0;
+/// Uncertainty of the heading after extrapolation, rad.
+const LOST_HEADING_SIGMA_RAD: f32 = 1.0;
+/// Standard deviations of a new robot's speed, m/s, and rate, rad/s.
+const SPEED_SIGMA_M_S: f32 = 2.0;
+const RATE_SIGMA_RAD_S: f32 = 5.0;
+/// White acceleration, m²/s³: `steady` is a robot that holds its speed within 0.1 m/s; `changing` is 5 m/s²
+/// held for 0.2 s.
+const PLACE_FREEDOM: Freedom = Freedom { steady: 0.15, changing: 10.0 };
+/// White angular acceleration, rad²/s³: as above with 0.3 rad/s, and 50 rad/s² held for 0.1 s.
+const HEADING_FREEDOM: Freedom = Freedom { steady: 2.0, changing: 250.0 };
+/// Weight of the newest detection in the quality.
+const QUALITY_SHARE: f32 = 0.1;
+
 /// Counts of robot detections by result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct RobotCounts {
@@ -22,7 +58,7 @@ pub struct RobotCounts {
     pub new: u64,
     /// Farther from the robot of that number than it can have moved.
     pub jumped: u64,
-    /// Where another robot stands: a wrong number or colour.
+    /// Detections where another robot stands: a wrong number or colour.
     pub wrong_name: u64,
 }
 
@@ -203,7 +239,7 @@ impl Robots {
         })
     }
 
-    /// That robot at that moment, if it is confirmed.
+    /// The robot at that moment, if it is confirmed.
     pub(super) fn robot(&self, who: Who, at: Captured) -> Option<Moved> {
         self.believed[index(who.colour)][who.id.index()].as_ref().map(|track| track.moved(at))
     }
@@ -239,39 +275,3 @@ pub(super) fn seconds(micros: Captured) -> f32 {
 pub(super) const fn micros(seconds: f32) -> Captured {
     (seconds * 1e6) as Captured
 }
-
-/// Camera frames that confirm a robot: 50 ms of one camera; misread patterns of one or two frames are
-/// excluded.
-const FRAMES_TO_BELIEVE: u16 = 3;
-/// Camera frames after which confidence is full.
-const FRAMES_FULL: u16 = 10;
-/// Detections nearer to each other than this are of one tick (two cameras see the robot), µs.
-const TICK_US: Captured = 5_000;
-/// A robot may be seen this far from its prediction, m: two cameras may disagree by 20 mm each (ER-Force's
-/// "object position offset"), the remainder is margin below a robot's radius.
-const GATE_M: f32 = 0.08;
-/// Growth of that distance for every second unseen, m/s: the fastest robots' speed.
-const GATE_GROWTH_M_S: f32 = 4.0;
-/// Longest time for which that distance grows, s.
-const GATE_TIME_MAX_S: f32 = 0.25;
-/// Within this time a robot was seen "just now", s: six frames of 60 Hz, three of a camera with dropouts.
-const SEEN_LATELY_S: f32 = 0.1;
-/// Two robots' centres are never nearer, m: the smallest hulls have a radius of 0.085 m, half of it is
-/// certainly a misreading.
-const SAME_PLACE_WITHIN_M: f32 = 0.09;
-/// An unseen robot is extrapolated straight on for this time, s, then assumed to stand still.
-const COASTS_FOR_S: f32 = 0.25;
-/// It is forgotten after that time, s.
-const FORGOTTEN_AFTER_S: f32 = 1.0;
-/// Uncertainty of the heading after extrapolation, rad.
-const LOST_HEADING_SIGMA_RAD: f32 = 1.0;
-/// Standard deviations of a new robot's speed, m/s, and rate, rad/s.
-const SPEED_SIGMA_M_S: f32 = 2.0;
-const RATE_SIGMA_RAD_S: f32 = 5.0;
-/// White acceleration, m²/s³: `steady` is a robot that holds its speed within 0.1 m/s; `changing` is 5 m/s² held
-/// for 0.2 s.
-const PLACE_FREEDOM: Freedom = Freedom { steady: 0.15, changing: 10.0 };
-/// White angular acceleration, rad²/s³: as above with 0.3 rad/s, and 50 rad/s² held for 0.1 s.
-const HEADING_FREEDOM: Freedom = Freedom { steady: 2.0, changing: 250.0 };
-/// Weight of the newest detection in the quality.
-const QUALITY_SHARE: f32 = 0.1;

@@ -8,6 +8,9 @@ use super::seen::CAMERAS_MAX;
 use crate::field_geometry::{GeometryChange, GeometryFault, VisionGeometry};
 use crate::world::BallModels;
 
+/// No camera is mounted lower than the height of a chipped ball, m.
+const CAMERA_HEIGHT_MIN_M: f32 = 1.5;
+
 /// Position of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Camera {
@@ -78,9 +81,6 @@ impl Scene {
         })
     }
 }
-
-/// No camera is mounted lower than the height of a chipped ball, m.
-const CAMERA_HEIGHT_MIN_M: f32 = 1.5;
 
 #[cfg(test)]
 mod tests {

@@ -6,6 +6,20 @@ use protocol::{RobotId, Who};
 use rules::Colour;
 use ssl::vision::{DetectionFrame, DetectionRobot};
 
+/// Cameras of a field, numbered from 0: the league uses 1 to 8.
+pub(super) const CAMERAS_MAX: usize = crate::field_geometry::CAMERAS_MAX as usize;
+/// Robots in one camera frame: 11 + 11, some twice under wrong numbers.
+const ROBOTS_MAX: usize = 48;
+/// Blobs in one camera frame; hands and shoes included.
+const BALLS_MAX: usize = 16;
+/// Farthest place that is accepted, mm: the largest field's surface ends at 6.7 m, a simulator let a ball lie
+/// at 9 m on a 9 m field (trap 11), and venues are not larger.
+const MM_MAX: f32 = 30_000.0;
+/// Headings come in (−π, π] or (0, 2π]; values far beyond are invalid.
+const RADIANS_MAX: f32 = 100.0;
+/// The year 2286, s; `f64` still resolves µs up to it.
+const SECONDS_MAX: f64 = 1e10;
+
 /// A moment on vision's clock, µs: since 1970, or since a simulator's start.
 pub(super) type Captured = i64;
 
@@ -92,20 +106,6 @@ fn place(x: f32, y: f32) -> Option<Point<Field>> {
 fn share(confidence: f32) -> f32 {
     if confidence.is_nan() { 0.0 } else { confidence.clamp(0.0, 1.0) }
 }
-
-/// Cameras of a field, numbered from 0: the league uses 1 to 8.
-pub(super) const CAMERAS_MAX: usize = crate::field_geometry::CAMERAS_MAX as usize;
-/// Robots in one camera frame: 11 + 11, some twice under wrong numbers.
-const ROBOTS_MAX: usize = 48;
-/// Blobs in one camera frame; hands and shoes included.
-const BALLS_MAX: usize = 16;
-/// Farthest place that is accepted, mm: the largest field's surface ends at 6.7 m, a simulator let a ball lie
-/// at 9 m on a 9 m field (trap 11), and venues are not larger.
-const MM_MAX: f32 = 30_000.0;
-/// Headings come in (−π, π] or (0, 2π]; values far beyond are invalid.
-const RADIANS_MAX: f32 = 100.0;
-/// The year 2286, s; `f64` still resolves µs up to it.
-const SECONDS_MAX: f64 = 1e10;
 
 #[cfg(test)]
 mod tests {

@@ -7,6 +7,12 @@ use host::strategy::pass::{Kicks, Offer, PassSearch, shot};
 use protocol::RobotId;
 use rules::League;
 
+/// A robot's length, m.
+const STAYS: f32 = 0.18;
+/// Seed of the searches: the same moments give the same places.
+const SEED: u64 = 1;
+const LEAGUES: [League; 3] = [League::DivisionB, League::DivisionA, League::Ssl2013];
+
 /// A shot that could be taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShotOffer {
@@ -125,9 +131,3 @@ fn distance_from_path(at: Pair, ball: &StrategyBall) -> f32 {
     let along = if way.dot(way) > 0.0 { ((at - from).dot(way) / way.dot(way)).clamp(0.0, 1.0) } else { 0.0 };
     at.distance(from + way * along)
 }
-
-/// A robot's length, m.
-const STAYS: f32 = 0.18;
-/// Seed of the searches: the same moments give the same places.
-const SEED: u64 = 1;
-const LEAGUES: [League; 3] = [League::DivisionB, League::DivisionA, League::Ssl2013];

@@ -15,13 +15,26 @@ use super::super::view::{View, ViewBall, ViewRobot};
 use super::Coach;
 use super::pass_state::RunningPass;
 
+/// A pass with a smaller P(receive) is not tried.
+const RESTART_PASS_P_MIN: f32 = 0.3;
+/// A pass whose P(receive) falls below this share of its first value is given up.
+const KEPT_PASS_P_SHARE: f32 = 0.5;
+/// A planned pass does not leave with a smaller P(receive): of 137 that left with more 85 % arrived (62 of 69
+/// against ours, 54 of 68 against the zone, seed 100), of 59 that left with less than 0.5, 37 %.
+const PLANNED_PASS_P_MIN: f32 = 0.6;
+/// This near to x_p a passer waits for its receiver, m: the 0.04 m between the robot and the ball, and its
+/// position error.
+const WAITING_WITHIN_M: f32 = 0.09;
+/// Looks at x* this exactly, rad: the robot itself corrects the remaining angle before it kicks.
+const AIMED_WITHIN_RAD: f32 = 0.15;
+
 /// A pass being coordinated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ahead {
     pub(super) receiver: RobotId,
     pub(super) rating: Rating,
     steps: PassAhead,
-    /// It is the attack of the Coerce and Attack Planner; whether its receiver coerced before.
+    /// Whether the receiver coerced before, if it is the attack of the Coerce and Attack Planner.
     planned: Option<bool>,
 }
 
@@ -42,14 +55,14 @@ impl Ahead {
         Task::Receive { at: self.rating.at, then: shot.one_touch.then_some(shot.aim) }
     }
 
-    /// Its reasons for the order, as numbers.
+    /// Reason of the order: the probabilities of the pass.
     pub(super) fn why(&self) -> OrderReason {
         OrderReason::Chances { receive: self.rating.receive(), goal: self.rating.goal() }
     }
 }
 
 impl Coach {
-    /// What our restart is aimed at: a shot with room, else the likeliest pass ahead, else the best remaining
+    /// Target of our restart: a shot with room, else the likeliest pass ahead, else the best remaining
     /// target.
     pub(super) fn target(&mut self, view: &View, kicker: RobotId, ball: &ViewBall) -> Target {
         let usual = support::target(view, kicker, ball.position);
@@ -159,16 +172,3 @@ fn times(
         passer.position.distance(at) < WAITING_WITHIN_M && (passer.heading - facing).abs() < AIMED_WITHIN_RAD;
     Times { at_ball: waits, passer: if waits { 0.0 } else { times.passer }, ..times }
 }
-
-/// A pass with a smaller P(receive) is not tried.
-const RESTART_PASS_P_MIN: f32 = 0.3;
-/// A pass whose P(receive) falls below this share of its first value is given up.
-const KEPT_PASS_P_SHARE: f32 = 0.5;
-/// A planned pass does not leave with a smaller P(receive): of 137 that left with more 85 % arrived (62 of 69
-/// against ours, 54 of 68 against the zone, seed 100), of 59 that left with less than 0.5, 37 %.
-const PLANNED_PASS_P_MIN: f32 = 0.6;
-/// This near to x_p a passer waits for its receiver, m: the 0.04 m between the robot and the ball, and its
-/// position error.
-const WAITING_WITHIN_M: f32 = 0.09;
-/// Looks at x* this exactly, rad: the robot itself corrects the remaining angle before it kicks.
-const AIMED_WITHIN_RAD: f32 = 0.15;

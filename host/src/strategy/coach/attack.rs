@@ -22,12 +22,40 @@ use super::pass_state::RunningPass;
 use super::rated_play::Chosen;
 use super::{Coach, Plan};
 
+/// Least P(goal) of a shot or a pass for which a case is broken off. Chosen over 8 matches against chasers of
+/// the ball: 14.8 scoring chances a match for and 10.9 against; with cases alone 8.6 and 12.8.
+const GOAL_P_MIN: f32 = 0.05;
+/// Least P(receive) of a pass in open play; a pass lost there finds teammates out of position.
+const OPEN_PLAY_PASS_P_MIN: f32 = 0.5;
+/// A chosen pass is given up below this share of its first P(receive).
+const KEPT_PASS_P_SHARE: f32 = 0.5;
+/// Time for which a choice is held: to move around the ball and aim.
+const CHOICE_HELD: Duration = Duration::millis(800);
+/// A case's pass is held for longer, until its passer is at the ball: a robot that has left the case for it
+/// does not propose it again. Scopes of the cases' robots are less than two seconds' drive.
+const CASE_PASS_HELD: Duration = Duration::millis(2000);
+/// Interval at which a better choice than a case is searched: as often as the field changes by a robot's
+/// body.
+const PLAY_ON_HELD: Duration = Duration::millis(200);
+/// A ball that moved by more than this is a new situation, m.
+const BALL_MOVED_M: f32 = 0.3;
+/// The receiver may arrive this much later than the ball, s: as in pass-ahead at restarts.
+const RECEIVER_LATE_MAX_S: f32 = 0.1;
+/// A pass has left when the ball is this far from the passer's centre, m (touching it is 0.11 m off).
+const DEPARTED_DISTANCE_M: f32 = 0.15;
+/// A pass leaves a robot that was at the ball within this time.
+const DEPARTED_WITHIN: Duration = Duration::millis(300);
+/// A pass leaves with at least this share of the speed ordered: a chip keeps 0.7 of it along the ground.
+const DEPARTED_SPEED_SHARE_MIN: f32 = 0.5;
+/// A pass leaves in the direction ordered, by the cosine: within 26°.
+const DEPARTED_COS_MIN: f32 = 0.9;
+
 /// The shot, pass or case chosen in open play, its robot, and since when.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Intent {
     who: RobotId,
     since: Instant,
-    /// Where the ball was then.
+    /// Place of the ball when it was chosen.
     from: Point<Attack>,
     action: Action,
 }
@@ -216,34 +244,6 @@ impl Coach {
         })
     }
 }
-
-/// Least P(goal) of a shot or a pass for which a case is broken off. Chosen over 8 matches against chasers of
-/// the ball: 14.8 scoring chances a match for and 10.9 against; with cases alone 8.6 and 12.8.
-const GOAL_P_MIN: f32 = 0.05;
-/// Least P(receive) of a pass in open play; a pass lost there finds teammates out of position.
-const OPEN_PLAY_PASS_P_MIN: f32 = 0.5;
-/// A chosen pass is given up below this share of its first P(receive).
-const KEPT_PASS_P_SHARE: f32 = 0.5;
-/// Time for which a choice is held: to move around the ball and aim.
-const CHOICE_HELD: Duration = Duration::millis(800);
-/// A case's pass is held for longer, until its passer is at the ball: a robot that has left the case for it
-/// does not propose it again. Scopes of the cases' robots are less than two seconds' drive.
-const CASE_PASS_HELD: Duration = Duration::millis(2000);
-/// Interval at which a better choice than a case is searched: as often as the field changes by a robot's
-/// body.
-const PLAY_ON_HELD: Duration = Duration::millis(200);
-/// A ball that moved by more than this is a new situation, m.
-const BALL_MOVED_M: f32 = 0.3;
-/// The receiver may arrive this much later than the ball, s: as in pass-ahead at restarts.
-const RECEIVER_LATE_MAX_S: f32 = 0.1;
-/// A pass has left when the ball is this far from the passer's centre, m (touching it is 0.11 m off).
-const DEPARTED_DISTANCE_M: f32 = 0.15;
-/// A pass leaves a robot that was at the ball within this time.
-const DEPARTED_WITHIN: Duration = Duration::millis(300);
-/// A pass leaves with at least this share of the speed ordered: a chip keeps 0.7 of it along the ground.
-const DEPARTED_SPEED_SHARE_MIN: f32 = 0.5;
-/// A pass leaves in the direction ordered, by the cosine: within 26°.
-const DEPARTED_COS_MIN: f32 = 0.9;
 
 #[cfg(test)]
 mod tests {

@@ -17,6 +17,9 @@ use super::super::view::{View, ViewBall};
 use super::ahead::Ahead;
 use super::{Coach, Plan};
 
+/// Free kicks farther back than this are taken as soon as possible, m: no pass from there leads to a shot.
+const COERCE_FROM_X_M: f32 = -1.0;
+
 /// The planner, and its settings at this free kick.
 #[derive(Clone, Debug)]
 pub(super) struct Cap {
@@ -125,6 +128,3 @@ fn begin(
     let scene = PassScene::of(view, kicks, ball.position, Some(kicker), receiver);
     Some(Ahead::new(receiver.id, scene.rate(attack.plan.at), view.now, Some(attack.reused)))
 }
-
-/// Free kicks farther back than this are taken as soon as possible, m: no pass from there leads to a shot.
-const COERCE_FROM_X_M: f32 = -1.0;

@@ -12,6 +12,33 @@ use super::super::view::{RobotSet, View, ViewBall};
 use super::super::{defence, roles};
 use super::{Coach, Plan};
 
+/// The ball is in the other half once it is this far beyond the halfway line, m.
+const HALFWAY_MARGIN_M: f32 = 0.3;
+/// Outside our area, but nearer to it than this, the ball is cleared, m, by the keeper if it is there first:
+/// a field player's centre is 0.11 m behind the ball it kicks and 0.17 m when it lines up, and there is no
+/// room to go around it on the goal's side.
+const KEEPERS_BALL_WITHIN_M: f32 = 0.3;
+/// Where a field player lines up for such a ball its centre is this far off our area, m: a body, and the
+/// distance robots keep (`brain`'s surroundings: 0.01 m off the line's middle of 0.01 m).
+const OFF_OUR_AREA_M: f32 = 0.115;
+/// Nearer than this to our area no field player gets behind the ball or beside it, m: a body.
+const BEHIND_BALL_ROOM_M: f32 = ROBOT_RADIUS;
+/// A ball this near a robot's centre, m, and this far from its heading, rad, is at its front.
+const FRONT_WITHIN_M: f32 = contact::TOUCHES_WITHIN;
+const FRONT_WITHIN_RAD: f32 = 0.4;
+/// From such a ball to the nearest robot that only defends, m: a robot that lines up is 0.17 m behind it, and
+/// two bodies are 0.18 m.
+const CLEARANCE_ROOM_M: f32 = 0.4;
+/// Cost of moving around a ball, s: half a circle of 0.2 m radius at moderate speed (estimate).
+const AROUND_BALL_COST_S: f32 = 0.4;
+/// Time for which a clearance is kept: to move around the ball, aim and kick.
+const CLEARANCE_KEPT: Duration = Duration::millis(2500);
+/// A clearance is kept while the ball is within this of where it lay, m.
+const BALL_MOVED_M: f32 = 0.3;
+/// A ball that comes at our goal faster than this is intercepted on its path, m/s: slower ones leave time to
+/// approach.
+const SHOT_SPEED_MIN_M_S: f32 = 0.5;
+
 /// A running clearance: its robot, start and place.
 #[derive(Clone, Copy, Debug)]
 struct Clearance {
@@ -35,7 +62,8 @@ pub(super) struct DefenceState {
 }
 
 impl DefenceState {
-    /// Where a field player clears the ball before our area, the others leave it room to get behind the ball.
+    /// The place, moved where a field player clears the ball before our area: the others leave it room to get
+    /// behind the ball.
     fn clear_of_clearance(&self, view: &View, id: RobotId, at: Point<Attack>) -> Point<Attack> {
         let (Some(ball), Some(robot)) = (view.ball, view.our(id)) else { return at };
         if self.keepers_ball != Some(false) || at.distance(ball.position) >= CLEARANCE_ROOM_M {
@@ -236,30 +264,3 @@ fn lies_before_our_area(view: &View, ball: &ViewBall) -> bool {
         && ball.velocity.norm() < defence::LYING_SPEED_MAX_M_S
         && view.in_our_area(ball.position, KEEPERS_BALL_WITHIN_M)
 }
-
-/// The ball is in the other half once it is this far beyond the halfway line, m.
-const HALFWAY_MARGIN_M: f32 = 0.3;
-/// Outside our area, but nearer to it than this, the ball is cleared, m, by the keeper if it is there first:
-/// a field player's centre is 0.11 m behind the ball it kicks and 0.17 m when it lines up, and there is no
-/// room to go around it on the goal's side.
-const KEEPERS_BALL_WITHIN_M: f32 = 0.3;
-/// Where a field player lines up for such a ball its centre is this far off our area, m: a body, and the
-/// distance robots keep (`brain`'s surroundings: 0.01 m off the line's middle of 0.01 m).
-const OFF_OUR_AREA_M: f32 = 0.115;
-/// Nearer than this to our area no field player gets behind the ball or beside it, m: a body.
-const BEHIND_BALL_ROOM_M: f32 = ROBOT_RADIUS;
-/// A ball this near a robot's centre, m, and this far from its heading, rad, is at its front.
-const FRONT_WITHIN_M: f32 = contact::TOUCHES_WITHIN;
-const FRONT_WITHIN_RAD: f32 = 0.4;
-/// From such a ball to the nearest robot that only defends, m: a robot that lines up is 0.17 m behind it, and
-/// two bodies are 0.18 m.
-const CLEARANCE_ROOM_M: f32 = 0.4;
-/// Cost of moving around a ball, s: half a circle of 0.2 m radius at moderate speed (estimate).
-const AROUND_BALL_COST_S: f32 = 0.4;
-/// Time for which a clearance is kept: to move around the ball, aim and kick.
-const CLEARANCE_KEPT: Duration = Duration::millis(2500);
-/// A clearance is kept while the ball is within this of where it lay, m.
-const BALL_MOVED_M: f32 = 0.3;
-/// A ball that comes at our goal faster than this is intercepted on its path, m/s: slower ones leave time to
-/// approach.
-const SHOT_SPEED_MIN_M_S: f32 = 0.5;

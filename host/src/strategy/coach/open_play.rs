@@ -13,6 +13,15 @@ use super::rated_play::RatedPlay;
 use super::uncover::Uncovering;
 use super::{Coach, Plan};
 
+/// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
+/// case.
+const CASE_PLAYER_BONUS_S: f32 = 1.0;
+/// A ball this near their area counts as in it, m: a robot that touches it from outside is 5 mm off the area,
+/// and cameras err by 3.
+const THEIR_AREA_WITHIN_M: f32 = 0.008;
+/// A slower ball at our goal can be reached, m/s.
+const SHOT_SPEED_MIN_M_S: f32 = 1.0;
+
 /// Memory of open play.
 #[derive(Clone, Debug)]
 pub(super) struct OpenPlayState {
@@ -148,12 +157,3 @@ fn is_shot_at_us(view: &View, ball: &ViewBall) -> bool {
 fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
     support::places(view, ball, 1).first().copied().unwrap_or((Point::new(0.0, 0.0), 0.0))
 }
-
-/// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
-/// case.
-const CASE_PLAYER_BONUS_S: f32 = 1.0;
-/// A ball this near their area counts as in it, m: a robot that touches it from outside is 5 mm off the area,
-/// and cameras err by 3.
-const THEIR_AREA_WITHIN_M: f32 = 0.008;
-/// A slower ball at our goal can be reached, m/s.
-const SHOT_SPEED_MIN_M_S: f32 = 1.0;

@@ -1,5 +1,5 @@
-//! `pass_state`: memory of the ball that we kicked: the pass that rolls, and the robot that must not touch the
-//! ball again. Attack frame, SI units.
+//! `pass_state`: memory of the ball that we kicked: the pass that rolls, and the robot that must not touch
+//! the ball again. Attack frame, SI units.
 
 use geometry::{Attack, Point};
 use protocol::{Duration, Instant, RobotId};
@@ -45,7 +45,7 @@ impl RunningPass {
     }
 }
 
-/// What the coach remembers of the ball that we kicked.
+/// Memory of the ball that we kicked.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PassState {
     /// The pass that is running.

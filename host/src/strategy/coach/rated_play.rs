@@ -15,6 +15,20 @@ use super::super::view::{View, ViewBall, ViewRobot};
 use super::open_play::is_left_to_the_keeper;
 use super::{Coach, Plan};
 
+/// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
+/// case.
+const CASE_PLAYER_BONUS_S: f32 = 0.5;
+/// Interval at which the list is rated.
+const RATED_EVERY: Duration = Duration::millis(50);
+/// A ball that moved by more than this is a new situation, m.
+const BALL_MOVED_M: f32 = 0.3;
+/// Another action is better by at least this: a robot that turns round loses half a second.
+const BETTER_BY_MIN: f32 = 0.02;
+/// An action must be better than a running case by at least this, P(goal): its partners have gone to their
+/// places for it. 40 matches each with 0.02, 0.06 and 0.1: 38, 33 and 29 % of the cases were reassigned, and
+/// no difference in goals was seen (docs/strategy.md).
+const CASE_MARGIN: f32 = 0.1;
+
 /// The action that was chosen, and for which ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chosen {
@@ -30,7 +44,7 @@ pub(super) struct Chosen {
 pub(super) struct RatedPlay {
     /// The case base that cases are retrieved from.
     pub(super) cases: CaseBase<'static>,
-    /// Which robot has the ball.
+    /// Robot that has the ball.
     possession: Possession,
     /// The action chosen from the list.
     pub(super) chosen: Option<Chosen>,
@@ -216,20 +230,6 @@ impl Coach {
         action
     }
 }
-
-/// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
-/// case.
-const CASE_PLAYER_BONUS_S: f32 = 0.5;
-/// Interval at which the list is rated.
-const RATED_EVERY: Duration = Duration::millis(50);
-/// A ball that moved by more than this is a new situation, m.
-const BALL_MOVED_M: f32 = 0.3;
-/// Another action is better by at least this: a robot that turns round loses half a second.
-const BETTER_BY_MIN: f32 = 0.02;
-/// An action must be better than a running case by at least this, P(goal): its partners have gone to their
-/// places for it. 40 matches each with 0.02, 0.06 and 0.1: 38, 33 and 29 % of the cases were reassigned, and
-/// no difference in goals was seen (docs/strategy.md).
-const CASE_MARGIN: f32 = 0.1;
 
 #[cfg(test)]
 mod tests {

@@ -12,10 +12,33 @@ use super::ahead::Ahead;
 use super::cap::Cap;
 use super::{Coach, Plan};
 
+/// Time by which another robot must be sooner at the ball to become the kicker, s: more than in play, the
+/// ball lies.
+const KICKER_CHANGE_S: f32 = 1.0;
+/// Mates are given this long to take their places before a restart is aimed, of the 5 s (A) that the rules
+/// give: they are there since the ball was placed, and run on while the kicker goes around it.
+const AIMED_AFTER: Duration = Duration::millis(200);
+/// A target once chosen stands for this long: to walk around the ball, aim and kick.
+const AIM_KEPT: Duration = Duration::millis(3000);
+/// Nearer to our goal than this the defenders are the wall, m.
+const WALL_BEYOND_M: f32 = 2.2;
+/// Time by which another robot must be sooner at the ball to take a placement over, s: as long as fetching it
+/// takes; and as usual of one that has not brought the ball nearer for this long.
+const PLACER_CHANGE_S: f32 = 4.0;
+const PLACER_STUCK_AFTER: Duration = Duration::millis(6_000);
+/// Time for which the robot that brings the ball is chosen anew: before, it was chosen for a stop.
+const PLACER_CHOSEN_WITHIN: Duration = Duration::millis(100);
+/// A ball that has come nearer to its place by this much counts as being placed, m.
+const PLACING_GAIN_MIN_M: f32 = 0.1;
+/// A ball that has not for this long is given up: the 30 s of a placement.
+const PLACING_GIVEN_UP_AFTER: Duration = Duration::millis(30_000);
+/// One that no robot can get at is given up as soon as it lies still.
+const OUT_OF_REACH_GIVEN_UP_AFTER: Duration = Duration::millis(2_000);
+
 /// Memory of our restart, or ball placement, that is running.
 #[derive(Clone, Debug)]
 pub(super) struct RestartState {
-    /// Its target, since when.
+    /// Target of the restart, and since when.
     pub(super) aim: Option<(Instant, Target)>,
     /// The pass ahead that it is to be.
     pub(super) ahead: Option<Ahead>,
@@ -242,26 +265,3 @@ impl Coach {
         self.spread(plan);
     }
 }
-
-/// How much sooner another robot must be at the ball to become the kicker, s: more than in play, the ball
-/// lies.
-const KICKER_CHANGE_S: f32 = 1.0;
-/// Mates are given this long to take their places before a restart is aimed, of the 5 s (A) that the rules
-/// give: they are there since the ball was placed, and run on while the kicker goes around it.
-const AIMED_AFTER: Duration = Duration::millis(200);
-/// A target once chosen stands for this long: to walk around the ball, aim and kick.
-const AIM_KEPT: Duration = Duration::millis(3000);
-/// Nearer to our goal than this the defenders are the wall, m.
-const WALL_BEYOND_M: f32 = 2.2;
-/// How much sooner another robot must be at the ball to take a placement over, s: as long as fetching it
-/// takes; and as usual of one that has not brought the ball nearer for this long.
-const PLACER_CHANGE_S: f32 = 4.0;
-const PLACER_STUCK_AFTER: Duration = Duration::millis(6_000);
-/// Who brings the ball is chosen again for this long: before, it was for a stop.
-const PLACER_CHOSEN_WITHIN: Duration = Duration::millis(100);
-/// A ball that has come nearer to its place by this much counts as being placed, m.
-const PLACING_GAIN_MIN_M: f32 = 0.1;
-/// A ball that has not for this long is given up: the 30 s of a placement.
-const PLACING_GIVEN_UP_AFTER: Duration = Duration::millis(30_000);
-/// One that no robot can get at is given up as soon as it lies still.
-const OUT_OF_REACH_GIVEN_UP_AFTER: Duration = Duration::millis(2_000);

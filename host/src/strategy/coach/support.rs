@@ -1,4 +1,5 @@
-//! `support`: places of the robots that support the one at the ball, held for a while. Attack frame, SI units.
+//! `support`: places of the robots that support the one at the ball, held for a while. Attack frame, SI
+//! units.
 
 use geometry::{Attack, Point};
 use protocol::{Duration, Instant, RobotId};
@@ -17,7 +18,7 @@ const HELD_IN_STOP: Duration = Duration::millis(6000);
 /// Interval at which places are searched again in open play.
 const HELD_IN_PLAY: Duration = Duration::millis(200);
 
-/// Where supporters are sent, and for which ball.
+/// Places to which supporters are sent, and for which ball.
 #[derive(Clone, Debug)]
 struct HeldPlaces {
     /// Place of the ball, now or later, that they were chosen for.
@@ -31,7 +32,7 @@ struct HeldPlaces {
 #[derive(Clone, Debug, Default)]
 pub(super) struct SupportState {
     held: Option<HeldPlaces>,
-    /// Where supporters stood last in open play.
+    /// Places where supporters stood last in open play.
     stood: heapless::Vec<Point<Attack>, ROBOTS_MAX>,
 }
 

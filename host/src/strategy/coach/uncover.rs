@@ -12,6 +12,19 @@ use super::super::order::{OrderReason, Role};
 use super::super::view::{ViewBall, nearest};
 use super::{Coach, Plan};
 
+/// A ball unseen for longer is hidden, not missed by the cameras: they miss at most some frames in a row.
+const HIDDEN_AFTER: Duration = Duration::millis(1000);
+/// A slower ball lies, m/s: one that a robot carries is faster.
+const RESTING_SPEED_MAX_M_S: f32 = 0.1;
+/// A robot's centre this near a ball hides it, m: its diameter.
+const HIDES_WITHIN_M: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
+/// Distance from the ball to which a robot steps back, m: two diameters show what lay beside one.
+const STEP_BACK_TO_M: f32 = 2.0 * HIDES_WITHIN_M;
+/// Time for stepping back: 0.2 m from rest at 3 m/s², the radio, and five frames of vision.
+const STEP_BACK_TIME: Duration = Duration::millis(800);
+/// Least time between two steps back: between, the robot tries to get the ball.
+const STEP_BACK_EVERY: Duration = Duration::millis(2500);
+
 /// A robot that steps back.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Uncovering {
@@ -47,19 +60,6 @@ impl Coach {
         }
     }
 }
-
-/// A ball unseen for longer is hidden, not missed by the cameras: they miss at most some frames in a row.
-const HIDDEN_AFTER: Duration = Duration::millis(1000);
-/// A slower ball lies, m/s: one that a robot carries is faster.
-const RESTING_SPEED_MAX_M_S: f32 = 0.1;
-/// A robot's centre this near a ball hides it, m: its diameter.
-const HIDES_WITHIN_M: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
-/// It steps back to this distance of the ball, m: two diameters show what lay beside one.
-const STEP_BACK_TO_M: f32 = 2.0 * HIDES_WITHIN_M;
-/// Time for stepping back: 0.2 m from rest at 3 m/s², the radio, and five frames of vision.
-const STEP_BACK_TIME: Duration = Duration::millis(800);
-/// It steps back again after this time at the earliest: between, it tries to get the ball.
-const STEP_BACK_EVERY: Duration = Duration::millis(2500);
 
 #[cfg(test)]
 mod tests {

@@ -10,16 +10,22 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 use super::super::view::{View, ViewRobot};
 use super::grid::{CELLS, Cell};
 
-/// What a pass to a place is worth.
+/// Places tried around the best cell's middle: the paper takes the cell, this refines it
+/// (docs/papers.md D18).
+pub const SAMPLES: u32 = 24;
+/// Their standard deviation, as a share of the cell's side: nearly all of them lie in the cell.
+const SAMPLE_SIGMA_SHARE: f32 = 0.25;
+
+/// Worth of a pass to a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worth {
     /// P(receive | x), 0–1.
     pub receive: f32,
     /// P(goal | receive, x), 0–1.
     pub goal: f32,
-    /// How the ball is kicked.
+    /// Kick of the pass.
     pub kick: KickOrder,
-    /// Where the receiver shoots at.
+    /// Target of the receiver's shot, m.
     pub aim: Point<Attack>,
 }
 
@@ -30,7 +36,7 @@ impl Worth {
     }
 }
 
-/// Where passes start, and the robot that plays them.
+/// Start of passes, and the robot that plays them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassOrigin {
     /// Place of the ball, m.
@@ -98,7 +104,7 @@ impl Least {
 pub struct AttackSearch {
     /// The robot at the ball.
     pub kicker: RobotId,
-    /// What an attack must reach.
+    /// Least values that an attack must reach.
     pub least: Least,
     /// Seed of the [`SAMPLES`] places.
     pub seed: u64,
@@ -155,9 +161,3 @@ fn gaussian(random: &mut Xoshiro128PlusPlus) -> Vector<Attack> {
     let turn = (random.next_u32() >> 8) as f32 * (math::TAU / 16_777_216.0);
     Vector::polar(math::sqrt(-2.0 * math::ln(share)), Angle::new(turn))
 }
-
-/// Places tried around the best cell's middle: the paper takes the cell, this refines it
-/// (docs/papers.md D18).
-pub const SAMPLES: u32 = 24;
-/// Their standard deviation, as a share of the cell's side: nearly all of them lie in the cell.
-const SAMPLE_SIGMA_SHARE: f32 = 0.25;

@@ -17,6 +17,9 @@ use super::detect::Detected;
 use super::grid::{CELLS, Cell};
 use super::{CoerceSettings, tactics};
 
+/// Likelihoods are compared in hundredths.
+const LIKELIHOOD_STEPS: f32 = 100.0;
+
 /// One robot of ours, the opponent that it draws, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coercer {
@@ -24,11 +27,11 @@ pub struct Coercer {
     pub robot: RobotId,
     /// The opponent that follows it.
     pub marker: RobotId,
-    /// Its cell of the grid.
+    /// Cell of the grid to which it goes.
     pub cell: Cell,
     /// The middle of that cell.
     pub at: Point<Attack>,
-    /// Where the opponent is expected then.
+    /// Expected place of the opponent then, m.
     pub expected: Point<Attack>,
     /// The interference likelihood of that opponent there …
     pub interference: f32,
@@ -153,8 +156,8 @@ pub fn coerce(
     plan
 }
 
-/// Where an opponent that follows robots drives to when the one it follows is at `at`: to its distance from
-/// it, on the side that it keeps to.
+/// Place to which an opponent that follows robots drives when the one it follows is at `at`: to its distance
+/// from it, on the side that it keeps to.
 pub fn response(
     situation: &tactics::CoerceSituation<'_>,
     marker: &Detected,
@@ -178,6 +181,3 @@ fn may_go(
     let shot = Segment::new(attack.at, attack.worth.aim).distance_to(at);
     !areas && pass.min(shot) >= settings.off_ways && at.distance(from) >= settings.off_ball
 }
-
-/// Likelihoods are compared in hundredths.
-const LIKELIHOOD_STEPS: f32 = 100.0;

@@ -7,12 +7,19 @@ use protocol::{Instant, RobotId};
 use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::tactics::{CoerceSituation, Likelihoods, Models, Tactic, detected};
 
+/// Snapshots count by e^(−age/this), s (D17: the last half second).
+const MEMORY_S: f32 = 0.5;
+/// After a gap of this length all estimates restart, s.
+const RESTART_AFTER_S: f32 = 2.0;
+/// A mark of at least this likelihood updates the distance.
+const MARKING_P_MIN: f32 = 0.5;
+
 /// State of an opponent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detected {
     /// The opponent's number in its team.
     pub opponent: RobotId,
-    /// Its place, attack frame, m.
+    /// Place of the opponent, attack frame, m.
     pub at: Point<Attack>,
     /// The tactic that explains its places best; `None` if none does: it counts as one that follows the ball.
     pub tactic: Option<Tactic>,
@@ -20,9 +27,9 @@ pub struct Detected {
     pub likelihoods: Likelihoods,
     /// The robot of ours that it follows.
     pub follows: Option<RobotId>,
-    /// Its distance from that robot, m: as observed of this opponent, before that the model's number.
+    /// Distance from that robot, m: as observed of this opponent, before that the model's number.
     pub stand_off: f32,
-    /// It stands between that robot and the ball, not their goal.
+    /// Whether it stands between that robot and the ball, not their goal.
     pub ball_side: bool,
 }
 
@@ -48,7 +55,7 @@ struct Known {
 }
 
 impl Detector {
-    /// Without any observation yet.
+    /// A detector without any observation.
     pub fn new(models: Models) -> Self {
         Self { models, seen: None, known: [None; ROBOTS_MAX] }
     }
@@ -112,13 +119,6 @@ impl Detector {
         }
     }
 }
-
-/// Snapshots count by e^(−age/this), s (D17: the last half second).
-const MEMORY_S: f32 = 0.5;
-/// After a gap of this length all estimates restart, s.
-const RESTART_AFTER_S: f32 = 2.0;
-/// A mark of at least this likelihood updates the distance.
-const MARKING_P_MIN: f32 = 0.5;
 
 #[cfg(test)]
 mod tests {

@@ -21,12 +21,12 @@ impl Cell {
         (0..CELLS as u8).map(Self)
     }
 
-    /// Its number, 0 to 23.
+    /// Number of the cell, 0 to 23.
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 
-    /// Its column and row, from 0.
+    /// Column and row of the cell, from 0.
     pub fn column_and_row(self) -> (usize, usize) {
         (self.index() % COLUMNS, self.index() / COLUMNS)
     }

@@ -27,10 +27,20 @@ use rules::League;
 pub use by_pass::ByPassLocation;
 pub use planner::{CapPlan, CoerceEnd, CoercePart, CoerceProgress, FinalAttack, Followed, Planner, Posting};
 
+/// P(receive) is a tenth above the least one for a kick (`coach::ahead`), as it falls slightly while passer
+/// and receiver get ready. Planned passes worth less than 0.005 led to 0.23 shots of ours within 12 s, the
+/// others to 0.75 (86 and 55 passes, seed 100, against the zone and against ours); free kicks taken at once
+/// against the zone to 0.82 (134).
+const ATTACK_MIN: attack::Least = attack::Least { receive: 0.7, value: 0.005 };
+/// Share of a free kick's time for coercing: 4 s of 10 (D16); the remaining time is for the pass-ahead.
+const COERCE_SHARE: f32 = 0.4;
+/// s (paper §4; division B).
+const FREE_KICK_TIME_S: f32 = 10.0;
+
 /// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoerceSettings {
-    /// How our robots drive, for the times at which they reach a cell.
+    /// Limits of our robots, for the times at which they reach a cell.
     pub robot: FreeLimits,
     /// Longest time for coercing, s: part of the time that a free kick may take.
     pub coerce_time: f32,
@@ -46,7 +56,8 @@ pub struct CoerceSettings {
     pub least: attack::Least,
     /// Coercers stay this far from pass and shot, m (D19).
     pub off_ways: f32,
-    /// Least distance of a coercer from the ball, m: the distance that robots keep from a ball that is not in play.
+    /// Least distance of a coercer from the ball, m: the distance that robots keep from a ball that is not in
+    /// play.
     pub off_ball: f32,
     /// Least distance of a coercer from both areas, m: the rules' 0.2 m at free kicks, a body, a margin.
     pub off_areas: f32,
@@ -76,16 +87,6 @@ impl Default for CoerceSettings {
         }
     }
 }
-
-/// P(receive) is a tenth above the least one for a kick (`coach::ahead`), as it falls slightly while passer
-/// and receiver get ready. Planned passes worth less than 0.005 led to 0.23 shots of ours within 12 s, the
-/// others to 0.75 (86 and 55 passes, seed 100, against the zone and against ours); free kicks taken at once
-/// against the zone to 0.82 (134).
-const ATTACK_MIN: attack::Least = attack::Least { receive: 0.7, value: 0.005 };
-/// Share of a free kick's time for coercing: 4 s of 10 (D16); the remaining time is for the pass-ahead.
-const COERCE_SHARE: f32 = 0.4;
-/// s (paper §4; division B).
-const FREE_KICK_TIME_S: f32 = 10.0;
 
 #[cfg(test)]
 mod tests;

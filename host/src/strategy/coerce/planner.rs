@@ -50,16 +50,17 @@ pub enum Followed {
         /// Distance from where it was expected, m.
         off: f32,
     },
-    /// They are, but others obstruct the pass: a new attack.
+    /// Followers are where expected, but others obstruct the pass: a new attack.
     Unlikely {
         /// P(receive | x) against all opponents.
         receive: f32,
     },
-    /// They are, but the attack's receiver, a coercer to be used again, is marked: a new attack.
+    /// Followers are where expected, but the attack's receiver, a coercer to be used again, is marked: a new
+    /// attack.
     ReceiverMarked {
         /// The opponent that marks the receiver.
         opponent: RobotId,
-        /// Its distance to the receiver, m.
+        /// Distance from it to the receiver, m.
         near: f32,
     },
 }
@@ -69,7 +70,7 @@ pub enum Followed {
 pub struct FinalAttack {
     /// The pass and the shot after it.
     pub plan: AttackPlan,
-    /// How the opponents reacted to the coercion.
+    /// Reaction of the opponents to the coercion.
     pub followed: Followed,
     /// Whether the receiver has coerced an opponent before (the paper's Table 1 counts them).
     pub reused: bool,
@@ -78,7 +79,7 @@ pub struct FinalAttack {
 /// Progress of the plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CoerceProgress {
-    /// Nothing is planned, as outside free kicks.
+    /// No plan, as outside free kicks.
     Idle,
     /// Robots go to the places of the coerce plan (step 4).
     Coercing {
@@ -115,7 +116,7 @@ pub enum CoercePart {
     Coerces {
         /// The opponent that follows the robot.
         marker: RobotId,
-        /// Where it is expected then.
+        /// Expected place of the opponent then, m.
         expected: Point<Attack>,
     },
     /// Holds its place until the attack: a robot that moves there early reveals the pass.
@@ -131,7 +132,7 @@ pub struct Posting {
     pub robot: RobotId,
     /// Place that it goes to, attack frame, m.
     pub at: Point<Attack>,
-    /// Its part in the plan.
+    /// Part of the robot in the plan.
     pub part: CoercePart,
 }
 

@@ -29,7 +29,7 @@ impl Tactic {
     /// All, as [`Likelihoods`] orders them.
     pub const ALL: [Self; 4] = [Self::Goalkeeper, Self::PrimaryDefence, Self::Mark, Self::Wall];
 
-    /// Its English name, for figures and reports.
+    /// English name, for figures and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Goalkeeper => "goalkeeper",
@@ -49,10 +49,11 @@ pub struct Models {
     /// Standard deviation of a robot's distance from the place that its tactic gives it, m (docs/papers.md
     /// D17).
     pub spread: f32,
-    /// Standard deviation of the distance of primary defenders from the edge that they move along, and of walls from the
-    /// distance they keep, m.
+    /// Standard deviation of the distance of primary defenders from the edge that they move along, and of
+    /// walls from the distance they keep, m.
     pub keeps: f32,
-    /// Standard deviation of the keeper's distance outside its area, m: it never leaves it; this is the cameras' error.
+    /// Standard deviation of the keeper's distance outside its area, m: it never leaves it; this is the
+    /// cameras' error.
     pub outside: f32,
     /// A defender's centre is this far outside the area that it must not enter, m: a body and a margin.
     pub off_area: f32,
@@ -127,7 +128,7 @@ impl<'v> CoerceSituation<'v> {
         best
     }
 
-    /// Where a marker stands: between our robot and their goal against its shot, or the ball against the pass
+    /// Places of a marker: between our robot and their goal against its shot, or the ball against the pass
     /// to it.
     pub fn mark_places(&self, ours: Point<Attack>, stand_off: f32) -> [Point<Attack>; 2] {
         let towards =
@@ -135,7 +136,7 @@ impl<'v> CoerceSituation<'v> {
         [towards(self.view.their_goal()), towards(self.ball)]
     }
 
-    /// As near to the ball as the rules allow.
+    /// Likelihood of a wall: as near to the ball as the rules allow.
     fn wall(&self, at: Point<Attack>) -> f32 {
         bell(at.distance(self.ball) - (BALL_DISTANCE + ROBOT_RADIUS + 0.02), self.models.keeps)
     }

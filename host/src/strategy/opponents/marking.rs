@@ -11,6 +11,17 @@ use crate::strategy::view::{View, ViewBall, ViewRobot};
 use crate::strategy::{roles, support};
 
 pub(super) const STYLE: Style = Style { target: support::target, places, keeps_places_at_free_kicks: true };
+/// An opponent this near the ball is covered by the robot that goes for the ball, m.
+const PLAYS_BALL_WITHIN_M: f32 = 0.4;
+/// Distance of a marker's centre from its opponent's, m: two bodies and room to brake.
+const MARK_OFF_M: f32 = 0.3;
+/// A marker goes to where its opponent will be after this time, s: latency of a command to the robot, and its
+/// first step.
+const MARKER_LEAD_S: f32 = 0.15;
+/// The ball counts as ours if we are this much sooner at it, s.
+const OURS_SOONER_BY_S: f32 = 0.3;
+/// Number of robots that leave their opponents while the ball is ours.
+const FORWARD_ROBOTS: usize = 2;
 
 fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
     let goal = view.our_goal();
@@ -44,15 +55,3 @@ fn is_ours(view: &View, ball: &ViewBall) -> bool {
     };
     soonest(&view.ours) + OURS_SOONER_BY_S < soonest(&view.theirs)
 }
-
-/// An opponent this near the ball is covered by the robot that goes for the ball, m.
-const PLAYS_BALL_WITHIN_M: f32 = 0.4;
-/// Distance of a marker's centre from its opponent's, m: two bodies and room to brake.
-const MARK_OFF_M: f32 = 0.3;
-/// A marker goes to where its opponent will be after this time, s: latency of a command to the robot, and its
-/// first step.
-const MARKER_LEAD_S: f32 = 0.15;
-/// The ball counts as ours if we are this much sooner at it, s.
-const OURS_SOONER_BY_S: f32 = 0.3;
-/// Number of robots that leave their opponents while the ball is ours.
-const FORWARD_ROBOTS: usize = 2;

@@ -18,7 +18,24 @@ use super::support::{self, Target};
 use super::view::{ROBOTS_MAX, View, ViewBall};
 use super::{Orders, defence, restart, roles};
 
-/// What decides a side's open play.
+/// Most places of a style: field players of a team of eleven.
+const PLACES_MAX: usize = 10;
+/// A ball slower than this counts as stopped, m/s.
+const LYING_SPEED_MAX_M_S: f32 = 0.25;
+/// A target is kept for this long, unless the ball moves: to move around it, aim and kick.
+const AIM_KEPT: Duration = Duration::millis(1500);
+/// Distance the ball moves from which a new target is chosen, m.
+const AIM_MOVED_M: f32 = 0.3;
+/// A supporting robot keeps this far from the ball, m: two bodies and room to turn with it.
+const OFF_TEAMMATES_BALL_M: f32 = 0.5;
+/// No robot is sent nearer to a line than this, m.
+const INSIDE_LINES_M: f32 = 0.15;
+/// Centres keep this far off their area, m: the rules' 0.2 m at restarts, a body and the control error.
+const OFF_THEIR_AREA_M: f32 = 0.35;
+/// Steps out of an area, m.
+const AREA_STEP_M: f32 = 0.02;
+
+/// Team whose open play a side plays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Team {
@@ -31,7 +48,7 @@ pub enum Team {
     Marking,
     /// A wall between ball and goal that follows the ball.
     Zone,
-    /// Its robots always stand still: a team that does not score against it cannot score.
+    /// Robots that always stand still: a team that does not score against it cannot score.
     Idle,
 }
 
@@ -41,7 +58,7 @@ impl Team {
     /// Those that move and are not ours.
     pub const OPPONENTS: [Self; 3] = [Self::Reactive, Self::Marking, Self::Zone];
 
-    /// Its name on command lines and in files.
+    /// Name on command lines and in files.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Ours => "ours",
@@ -66,7 +83,7 @@ pub(super) struct OpponentModel {
     first: Option<RobotId>,
     /// Target of the ball, since when, from where.
     aim: Option<(Instant, Point<Attack>, Target)>,
-    /// Which robot had which of the style's places.
+    /// Robots that had the style's places, by place.
     held: [Option<RobotId>; PLACES_MAX],
 }
 
@@ -75,7 +92,7 @@ pub(super) struct OpponentModel {
 struct Style {
     /// The target chosen for the robot at the ball.
     target: fn(&View, RobotId, Point<Attack>) -> Target,
-    /// Where the others stand, most urgent first, while `wanted` of them are free.
+    /// Places of the others, most urgent first, while `wanted` of them are free.
     places: fn(&View, &ViewBall, usize) -> Places,
     /// Whether they stand there against a free kick too; else two defend, one is the wall and the others
     /// mark.
@@ -156,7 +173,7 @@ impl OpponentModel {
         orders
     }
 
-    /// Where `wanted` robots stand against a free kick, most urgent first; `None`: as all teams do.
+    /// Places of `wanted` robots against a free kick, most urgent first; `None`: as all teams do.
     pub(super) fn against_free_kick(&self, view: &View, ball: &ViewBall, wanted: usize) -> Option<Places> {
         let mut places =
             self.style.keeps_places_at_free_kicks.then(|| (self.style.places)(view, ball, wanted))?;
@@ -244,23 +261,6 @@ fn off_areas(view: &View, at: Point<Attack>) -> Point<Attack> {
     }
     at
 }
-
-/// Most places of a style: field players of a team of eleven.
-const PLACES_MAX: usize = 10;
-/// A ball slower than this counts as stopped, m/s.
-const LYING_SPEED_MAX_M_S: f32 = 0.25;
-/// A target is kept for this long, unless the ball moves: to move around it, aim and kick.
-const AIM_KEPT: Duration = Duration::millis(1500);
-/// Distance the ball moves from which a new target is chosen, m.
-const AIM_MOVED_M: f32 = 0.3;
-/// A supporting robot keeps this far from the ball, m: two bodies and room to turn with it.
-const OFF_TEAMMATES_BALL_M: f32 = 0.5;
-/// No robot is sent nearer to a line than this, m.
-const INSIDE_LINES_M: f32 = 0.15;
-/// Centres keep this far off their area, m: the rules' 0.2 m at restarts, a body and the control error.
-const OFF_THEIR_AREA_M: f32 = 0.35;
-/// Steps out of an area, m.
-const AREA_STEP_M: f32 = 0.02;
 
 #[cfg(test)]
 mod tests;

@@ -12,6 +12,14 @@ use crate::strategy::support::{Target, best_shot};
 use crate::strategy::view::{View, ViewBall};
 
 pub(super) const STYLE: Style = Style { target: shoot_or_clear, places, keeps_places_at_free_kicks: false };
+/// Farther shots are not tried, m.
+const SHOT_LENGTH_MAX_M: f32 = 4.0;
+/// Distance to the stop position of a clearance, m: as far as the kicker is the first at it again.
+const CLEAR_LENGTH_M: f32 = 2.0;
+/// A clearance goes from the wing to the middle by this share of its distance.
+const CLEAR_INWARD_SHARE: f32 = 0.5;
+/// The second stays this far behind the ball, m: where a ball lost by the first stops.
+const SECOND_BEHIND_M: f32 = 0.9;
 
 /// A shot where one is worth it, else ahead along the freest path: the robot then follows its own ball.
 pub(super) fn shoot_or_clear(view: &View, _robot: RobotId, ball: Point<Attack>) -> Target {
@@ -46,12 +54,3 @@ fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
         .take(wanted)
         .collect()
 }
-
-/// Farther shots are not tried, m.
-const SHOT_LENGTH_MAX_M: f32 = 4.0;
-/// Distance to the stop position of a clearance, m: as far as the kicker is the first at it again.
-const CLEAR_LENGTH_M: f32 = 2.0;
-/// A clearance goes from the wing to the middle by this share of its distance.
-const CLEAR_INWARD_SHARE: f32 = 0.5;
-/// The second stays this far behind the ball, m: where a ball lost by the first stops.
-const SECOND_BEHIND_M: f32 = 0.9;

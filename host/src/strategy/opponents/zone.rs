@@ -9,6 +9,16 @@ use crate::strategy::support;
 use crate::strategy::view::{View, ViewBall};
 
 pub(super) const STYLE: Style = Style { target: support::target, places, keeps_places_at_free_kicks: true };
+/// Spacing of the wall's robots, centre to centre, m: two bodies, and a gap smaller than a ball.
+const WALL_SPACING_M: f32 = 0.3;
+/// The wall stands this far before the ball, m: the nearest it may be while the ball is the opponents', with
+/// a body.
+const WALL_OFF_BALL_M: f32 = 0.8;
+/// Least distance of the wall from the goal beyond the area's depth, m.
+const WALL_BEYOND_AREA_MIN_M: f32 = 0.35;
+/// Nor farther from it than this share of the field: a wall at the halfway line could be chipped over, to the
+/// keeper alone.
+const WALL_DISTANCE_SHARE_MAX: f32 = 0.4;
 
 fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
     let goal = view.our_goal();
@@ -26,14 +36,3 @@ fn places(view: &View, ball: &ViewBall, wanted: usize) -> Places {
     });
     bricks.chain(free_places(view, ball, forward)).take(wanted).collect()
 }
-
-/// Spacing of the wall's robots, centre to centre, m: two bodies, and a gap smaller than a ball.
-const WALL_SPACING_M: f32 = 0.3;
-/// The wall stands this far before the ball, m: the nearest it may be while the ball is the opponents', with
-/// a body.
-const WALL_OFF_BALL_M: f32 = 0.8;
-/// It never comes nearer to the goal than this beyond the area's depth, m.
-const WALL_BEYOND_AREA_MIN_M: f32 = 0.35;
-/// Nor farther from it than this share of the field: a wall at the halfway line could be chipped over, to the
-/// keeper alone.
-const WALL_DISTANCE_SHARE_MAX: f32 = 0.4;

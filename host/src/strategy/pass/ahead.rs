@@ -15,6 +15,17 @@ use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use super::super::view::ViewRobot;
 use super::scene::Rating;
 
+/// T_f: a pass that has not left by then is replanned, s: the 10 s that a free kick may take leave room for a
+/// second try.
+pub const SEARCH_TIME: Duration = Duration::millis(4000);
+/// The receiver may come this much later than the ball, s: the time in which a body covers 0.09 m while
+/// braking, and the delay of a camera frame (D14).
+const RECEIVER_LATE_MAX_S: f32 = 0.08;
+/// Nearer to x_p than this the passer has arrived, m: the tolerance of its dribbler opening.
+const AT_BALL_WITHIN_M: f32 = 0.03;
+/// A passer that has arrived faces x* this exactly, rad (3°, as the robots' own kicks).
+const AIMED_WITHIN_RAD: f32 = 3.0 * (math::PI / 180.0);
+
 /// Times used by Algorithm 1, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
@@ -160,17 +171,6 @@ impl PassAhead {
         Moves { passer, receiver_goes: self.receiver.is_some() }
     }
 }
-
-/// T_f: a pass that has not left by then is replanned, s: the 10 s that a free kick may take leave room for a
-/// second try.
-pub const SEARCH_TIME: Duration = Duration::millis(4000);
-/// The receiver may come this much later than the ball, s: the time in which a body covers 0.09 m while
-/// braking, and the delay of a camera frame (D14).
-const RECEIVER_LATE_MAX_S: f32 = 0.08;
-/// Nearer to x_p than this the passer has arrived, m: the tolerance of its dribbler opening.
-const AT_BALL_WITHIN_M: f32 = 0.03;
-/// A passer that has arrived faces x* this exactly, rad (3°, as the robots' own kicks).
-const AIMED_WITHIN_RAD: f32 = 3.0 * (math::PI / 180.0);
 
 #[cfg(test)]
 mod tests;

@@ -5,6 +5,22 @@ use geometry::{Angle, Attack, Point, Vector, math};
 
 use super::scene::{PassScene, Rating};
 
+/// Largest distance of the point from the adapted position, m: less than the least scope of the cases'
+/// robots, so that it stays the case's play.
+pub const RADIUS: f32 = 0.6;
+/// The case's own place is kept unless another one is better by a twentieth: below, it would follow noise.
+pub const WORTH_MOVING: f32 = 1.05;
+/// Places of the sunflower: 0.15 m apart at a radius of 0.6 m.
+const SUNFLOWER_PLACES: u32 = 48;
+/// rad: π (3 − √5).
+const GOLDEN_ANGLE_RAD: f32 = 2.399_963_2;
+/// Rounding must not place the outermost ones outside.
+const RADIUS_SHARE: f32 = 0.999;
+/// Circles around the best place: radius of the first as a share, their number, and places on each.
+const FIRST_STEP: f32 = 0.125;
+const ROUNDS: u32 = 4;
+const DIRECTIONS: u32 = 8;
+
 /// A case's pass point, refined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refined {
@@ -16,7 +32,7 @@ pub struct Refined {
 }
 
 impl Refined {
-    /// What the refinement adds to P(goal).
+    /// Gain of P(goal) by the refinement.
     pub fn gain(&self) -> f32 {
         self.best.value() - self.proposed.value()
     }
@@ -58,22 +74,6 @@ pub fn refine(scene: &PassScene<'_>, place: Point<Attack>, radius: f32) -> Refin
     }
     Refined { proposed, best }
 }
-
-/// Largest distance of the point from the adapted position, m: less than the least scope of the cases'
-/// robots, so that it stays the case's play.
-pub const RADIUS: f32 = 0.6;
-/// The case's own place is kept unless another one is better by a twentieth: below, it would follow noise.
-pub const WORTH_MOVING: f32 = 1.05;
-/// Places of the sunflower: 0.15 m apart at a radius of 0.6 m.
-const SUNFLOWER_PLACES: u32 = 48;
-/// rad: π (3 − √5).
-const GOLDEN_ANGLE_RAD: f32 = 2.399_963_2;
-/// Rounding must not place the outermost ones outside.
-const RADIUS_SHARE: f32 = 0.999;
-/// Circles around the best place: radius of the first as a share, their number, and places on each.
-const FIRST_STEP: f32 = 0.125;
-const ROUNDS: u32 = 4;
-const DIRECTIONS: u32 = 8;
 
 #[cfg(test)]
 mod tests {

@@ -102,7 +102,7 @@ const TODAY: PassConstants = PassConstants {
     arrival: 2.0,
     chip_slope: RobotSpec::OURS.kicker.chip_slope,
 };
-/// What any robot of the league is taken to drive.
+/// Limits assumed of any robot of the league.
 const ROBOT: FreeLimits = FreeLimits::of(&RobotSpec::OURS.assumed.pass);
 /// m/s (rules 2026, offences).
 const DIVISION_B_BALL_SPEED: f32 = 6.5;

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::watch::{Ordered, PassVerdict};
 
+/// Number of calibration bins: tenths of P(we have it).
+pub const BINS: usize = 10;
+
 /// Passes of one kind of kick, by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fates {
@@ -15,13 +18,13 @@ pub struct Fates {
     pub by_teammate: u32,
     /// An opponent intercepted it.
     pub intercepted: u32,
-    /// It passed the receiver.
+    /// Passes that went past the receiver.
     pub missed: u32,
     /// The receiver came too late.
     pub late: u32,
-    /// It left the field.
+    /// Passes that left the field.
     pub out: u32,
-    /// It was never kicked.
+    /// Passes that were never kicked.
     pub no_kick: u32,
 }
 
@@ -46,9 +49,6 @@ pub struct PassCounters {
     /// By predicted P(we have it): 0–0.1, …, 0.9–1. Passes that were never kicked are in no bin.
     pub calibration: [Bin; BINS],
 }
-
-/// Number of calibration bins: tenths of P(we have it).
-pub const BINS: usize = 10;
 
 impl Fates {
     /// Number of all passes.

@@ -12,12 +12,23 @@ use protocol::RobotId;
 use super::kicks::{ChipKick, FlatKick};
 use super::reach::Mover;
 
+/// Largest margin returned, s: at a width of 0.1 s it is a certain pass (1 − exp(−6) = 0.998), below its
+/// negative a lost one.
+pub const SAFE: f32 = 0.6;
+/// From this distance on the whole reaction counts, m: the scatter over 5 m of a kick of 0.5° to 1°; nearer,
+/// a body is likely hit without moving.
+const REACTION_FADES_M: f32 = 0.1;
+/// 2 √(0.1 m / 3.5 m/s²), s.
+const REACTION_TIME_S: f32 = 0.338;
+/// Places nearer to each other than this count as equal, m.
+const SAME_PLACE_WITHIN_M: f32 = 0.02;
+
 /// An opponent that may intercept the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassOpponent {
     /// The opponent's number in its team.
     pub id: RobotId,
-    /// Its motion and limits.
+    /// Motion and limits of the opponent.
     pub mover: Mover,
 }
 
@@ -26,7 +37,7 @@ pub struct PassOpponent {
 pub struct Interceptor {
     /// The opponent's number in its team.
     pub id: RobotId,
-    /// Its time there less the ball's, s.
+    /// Time of the opponent there less the ball's, s.
     pub margin: f32,
     /// Distance along the path, m.
     pub along: f32,
@@ -167,17 +178,6 @@ impl BallPath {
         time + self.reaction * (time * (1.0 / REACTION_TIME_S)).min(1.0)
     }
 }
-
-/// Largest margin returned, s: at a width of 0.1 s it is a certain pass (1 − exp(−6) = 0.998), below its
-/// negative a lost one.
-pub const SAFE: f32 = 0.6;
-/// From this distance on the whole reaction counts, m: the scatter over 5 m of a kick of 0.5° to 1°; nearer,
-/// a body is likely hit without moving.
-const REACTION_FADES_M: f32 = 0.1;
-/// 2 √(0.1 m / 3.5 m/s²), s.
-const REACTION_TIME_S: f32 = 0.338;
-/// Places nearer to each other than this count as equal, m.
-const SAME_PLACE_WITHIN_M: f32 = 0.02;
 
 #[cfg(test)]
 mod tests {

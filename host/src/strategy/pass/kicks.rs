@@ -12,6 +12,21 @@ use rules::League;
 
 use super::constants::PassConstants;
 
+/// Time of a ball that never arrives, s.
+pub const NEVER_S: f32 = 1e3;
+/// Chips in the table, and the distance between two of them, m: up to 7.3 m; a chip of 6.2 m/s rolls from 6
+/// m.
+const CHIPS: usize = 64;
+const CHIP_STEP_M: f32 = 0.1;
+/// Shortest chip, m: its first hop of 0.65 m is 0.16 m high, just over a robot.
+const CHIP_LENGTH_MIN_M: f32 = 1.0;
+/// First estimate of the share of a chip's distance up to the first touch: 1 / (1 + 0.8 · 0.47 + 0.68 · 0.22)
+/// of TIGERs' balls.
+const FIRST_HOP_SHARE: f32 = 0.65;
+/// The ratio changes only where a hop becomes too low to count; it is constant after one round between such
+/// places.
+const ROUNDS: u32 = 6;
+
 /// A kick of a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PassKick {
@@ -30,7 +45,7 @@ pub enum PassKick {
 }
 
 impl PassKick {
-    /// As an order of the protocol.
+    /// The kick as an order of the protocol.
     pub fn order(self) -> KickOrder {
         match self {
             Self::Flat { speed } => KickOrder::Flat((speed * 100.0) as u16),
@@ -58,7 +73,7 @@ pub struct FlatKick {
     pub speed: f32,
     slide: f32,
     roll: f32,
-    /// Where and when it starts to roll, and how fast.
+    /// Distance, time and speed at which it starts to roll.
     slide_distance: f32,
     slide_time: f32,
     roll_speed: f32,
@@ -106,7 +121,7 @@ pub struct ChipKick {
     pub speed: f32,
     /// Along the ground until it first comes down, m/s.
     pub along: f32,
-    /// Where it first comes down, m, and when, s.
+    /// Distance at which it first comes down, m, and time, s.
     pub lands: f32,
     /// Time of the first touch-down, s.
     pub lands_at: f32,
@@ -235,21 +250,6 @@ fn chip_that_rolls(
     }
     found
 }
-
-/// Time of a ball that never arrives, s.
-pub const NEVER_S: f32 = 1e3;
-/// Chips in the table, and the distance between two of them, m: up to 7.3 m; a chip of 6.2 m/s rolls from 6
-/// m.
-const CHIPS: usize = 64;
-const CHIP_STEP_M: f32 = 0.1;
-/// Shortest chip, m: its first hop of 0.65 m is 0.16 m high, just over a robot.
-const CHIP_LENGTH_MIN_M: f32 = 1.0;
-/// First estimate of the share of a chip's distance up to the first touch: 1 / (1 + 0.8 · 0.47 + 0.68 · 0.22)
-/// of TIGERs' balls.
-const FIRST_HOP_SHARE: f32 = 0.65;
-/// The ratio changes only where a hop becomes too low to count; it is constant after one round between such
-/// places.
-const ROUNDS: u32 = 6;
 
 #[cfg(test)]
 mod tests {

@@ -7,6 +7,9 @@
 use geometry::{Attack, Point, Vector, math};
 use motion::trajectory::FreeLimits;
 
+/// m; nearer, directions are undefined.
+const SAME_PLACE_WITHIN_M: f32 = 1e-3;
+
 /// A robot with its limits; its acceleration is also used as its braking.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mover {
@@ -26,7 +29,7 @@ pub struct Mover {
 }
 
 impl Mover {
-    /// That robot with these limits.
+    /// A robot at this place and velocity, with these limits.
     pub fn new(position: Point<Attack>, velocity: Vector<Attack>, limits: &FreeLimits) -> Self {
         let FreeLimits { speed, acceleration, .. } = *limits;
         let per_acceleration = 1.0 / acceleration;
@@ -112,9 +115,6 @@ impl Mover {
         first + (2.0 * self.speed - ahead) * self.per_acceleration + (distance - paths) * self.per_speed
     }
 }
-
-/// m; nearer, directions are undefined.
-const SAME_PLACE_WITHIN_M: f32 = 1e-3;
 
 #[cfg(test)]
 mod tests {

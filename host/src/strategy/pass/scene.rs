@@ -18,10 +18,19 @@ use super::kicks::{FlatKick, Kicks, PassKick};
 use super::open::GoalOpening;
 use super::reach::Mover;
 
+/// m; nearer, directions are undefined.
+const SAME_PLACE_WITHIN_M: f32 = 1e-3;
+/// From places farther off the goal line than this most shots are slower than a keeper, m: 0.5 s at 6.24 m/s.
+const KEEPER_MATTERS_BEYOND_M: f32 = 2.8;
+/// Nine factors in another order differ by less than 10⁻⁶.
+const ROUNDING_FACTOR: f32 = 1.0 + 1e-5;
+/// A chip that ends in a goal less often than this is not considered: one in two hundred.
+const CHIP_GOAL_P_MIN: f32 = 0.005;
+
 /// Probabilities of a pass to a place, with their factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rating {
-    /// Where the pass is received.
+    /// Place of the reception, m.
     pub at: Point<Attack>,
     /// The kick that is likelier to end in a goal.
     pub kick: PassKick,
@@ -43,7 +52,7 @@ pub struct Rating {
     pub spoiler: (Spoiler, f32),
     /// The shot after the reception.
     pub shot: ShotFrom,
-    /// What having the ball there is worth without a shot, 0–1; 0 where only goals count.
+    /// Worth of having the ball there without a shot, 0–1; 0 where only goals count.
     pub held: f32,
 }
 
@@ -56,7 +65,7 @@ pub struct ShotFrom {
     pub angle: f32,
     /// Time until it is there, s.
     pub time: f32,
-    /// Without stopping the ball first.
+    /// Whether the receiver shoots without stopping the ball first.
     pub one_touch: bool,
 }
 
@@ -167,7 +176,7 @@ impl<'k> PassScene<'k> {
         Self { receiver, ..self.clone() }
     }
 
-    /// Where the pass starts, x0.
+    /// Start of the pass, x0.
     pub fn from(&self) -> Point<Attack> {
         self.from
     }
@@ -360,7 +369,7 @@ impl<'k> PassScene<'k> {
         worst
     }
 
-    /// In the opponents' defence area, lines included.
+    /// Whether a place is in the opponents' defence area, lines included.
     pub fn in_their_area(&self, at: Point<Attack>) -> bool {
         let place = Point::new(at.x(), at.y());
         at.x() > 0.0 && at.x() <= self.half[0] && self.their_area.iter().any(|shape| shape.contains(place))
@@ -388,15 +397,6 @@ fn enough(floor: f32, others: f32, c: &PassConstants) -> f32 {
         -SAFE
     }
 }
-
-/// m; nearer, directions are undefined.
-const SAME_PLACE_WITHIN_M: f32 = 1e-3;
-/// From places farther off the goal line than this most shots are slower than a keeper, m: 0.5 s at 6.24 m/s.
-const KEEPER_MATTERS_BEYOND_M: f32 = 2.8;
-/// Nine factors in another order differ by less than 10⁻⁶.
-const ROUNDING_FACTOR: f32 = 1.0 + 1e-5;
-/// A chip that ends in a goal less often than this is not considered: one in two hundred.
-const CHIP_GOAL_P_MIN: f32 = 0.005;
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -15,6 +15,18 @@ use super::super::view::{ROBOTS_MAX, View};
 use super::kicks::Kicks;
 use super::scene::{PassScene, Rating};
 
+/// Places rated at one moment (D13).
+pub const SAMPLES: u32 = 200;
+/// Standard deviation of samples near the last optimum, m along each axis (D13).
+const NEAR_SIGMA_M: f32 = 0.5;
+/// √3: four uniform numbers have a variance of 1/3.
+const ROOT_OF_3: f32 = 1.732_050_8;
+/// One of this number of samples lies anywhere (D13: 10 %).
+const GLOBAL_SHARE: u32 = 10;
+/// Factor by which a place elsewhere must be better to jump there: a receiver that turns round loses half a
+/// second, which costs a fifth of the passes that were likely.
+const JUMP_GAIN: f32 = 1.25;
+
 /// A receiver's search, kept between snapshots.
 #[derive(Clone, Debug)]
 pub struct Search {
@@ -23,7 +35,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// Its samples are those of this seed.
+    /// A search whose samples are those of this seed.
     pub fn new(seed: u64) -> Self {
         Self { random: Xoshiro128PlusPlus::seed_from_u64(seed), last: None }
     }
@@ -100,7 +112,7 @@ fn better(best: Option<Rating>, scene: &PassScene<'_>, at: Point<Attack>) -> Rat
 pub struct Offer {
     /// Number of the receiving teammate.
     pub receiver: RobotId,
-    /// Its place, with the factors.
+    /// Place of the reception, with the factors.
     pub rating: Rating,
 }
 
@@ -160,18 +172,6 @@ impl PassSearch {
         self.receivers.iter_mut().for_each(Search::forget);
     }
 }
-
-/// Places rated at one moment (D13).
-pub const SAMPLES: u32 = 200;
-/// Standard deviation of samples near the last optimum, m along each axis (D13).
-const NEAR_SIGMA_M: f32 = 0.5;
-/// √3: four uniform numbers have a variance of 1/3.
-const ROOT_OF_3: f32 = 1.732_050_8;
-/// One of this number of samples lies anywhere (D13: 10 %).
-const GLOBAL_SHARE: u32 = 10;
-/// Factor by which a place elsewhere must be better to jump there: a receiver that turns round loses half a
-/// second, which costs a fifth of the passes that were likely.
-const JUMP_GAIN: f32 = 1.25;
 
 #[cfg(test)]
 mod tests {

@@ -12,6 +12,29 @@ use rules::{Colour, FieldSpec, contact};
 use super::conditions::ours_after;
 use crate::world::{Ball, World};
 
+/// A robot's centre this near the ball may touch it, m.
+const TOUCHES_WITHIN_M: f32 = contact::PASS_TOUCHED_WITHIN;
+/// Farther from the passer the ball has left it, m.
+const LEFT_BEYOND_M: f32 = contact::PASS_LEFT_BEYOND;
+/// A ball faster than this was kicked, m/s: slower than any pass, faster than a ball that is pushed along.
+const KICKED_SPEED_MIN_M_S: f32 = 0.8;
+/// A change of velocity that the field surface does not cause between two snapshots, m/s, and as a share of
+/// the speed.
+const SPEED_CHANGE_MIN_M_S: f32 = 0.3;
+const SPEED_CHANGE_MIN_SHARE: f32 = 0.15;
+/// A slower ball counts as stopped, m/s.
+const STOPPED_SPEED_MAX_M_S: f32 = 0.15;
+/// A kick is known by its speed only after a few snapshots, s.
+const KICK_KNOWN_AFTER_S: f32 = 0.3;
+/// Distance from x* within which a receiver counts as there, and a ball as arrived, m: two robots' radii and
+/// the ball.
+const ARRIVED_WITHIN_M: f32 = 0.2;
+/// A pass that has not left by then counts as not kicked: the time in which it may be searched
+/// ([`super::ahead::SEARCH_TIME`]), and a second for the kick.
+const KICK_TIME_MAX: Duration = Duration::millis(5000);
+/// Time in which a receiver that missed it may still reach it, s.
+const COLLECTED_TIME_MAX_S: f32 = 1.5;
+
 /// A pass that was ordered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ordered {
@@ -70,19 +93,19 @@ pub enum PassVerdict {
         /// Time after the kick, s.
         after: f32,
     },
-    /// It passed, or stopped short of, a receiver that was there.
+    /// A ball that passed, or stopped short of, a receiver that was there.
     Missed {
         /// The ball's least distance from x*, m.
         by: f32,
     },
-    /// It passed x* before the receiver was there.
+    /// A ball that passed x* before the receiver was there.
     Late {
         /// The receiver's distance from x* then, m.
         receiver_off: f32,
     },
-    /// It left the field before any robot touched it.
+    /// A ball that left the field before any robot touched it.
     Out {
-        /// Where it left the field.
+        /// Place where it left the field.
         at: Point<Field>,
     },
     /// The ball never left the passer.
@@ -112,7 +135,7 @@ pub struct PassWatch {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Flight {
     since: Instant,
-    /// Its least distance from x* so far, m.
+    /// Least distance of the ball from x* so far, m.
     nearest: f32,
     /// When it passed x*: the receiver's distance, m.
     receiver_off: Option<f32>,
@@ -262,29 +285,6 @@ impl Flight {
         }
     }
 }
-
-/// A robot's centre this near the ball may touch it, m.
-const TOUCHES_WITHIN_M: f32 = contact::PASS_TOUCHED_WITHIN;
-/// Farther from the passer the ball has left it, m.
-const LEFT_BEYOND_M: f32 = contact::PASS_LEFT_BEYOND;
-/// A ball faster than this was kicked, m/s: slower than any pass, faster than a ball that is pushed along.
-const KICKED_SPEED_MIN_M_S: f32 = 0.8;
-/// A change of velocity that the field surface does not cause between two snapshots, m/s, and as a share of
-/// the speed.
-const SPEED_CHANGE_MIN_M_S: f32 = 0.3;
-const SPEED_CHANGE_MIN_SHARE: f32 = 0.15;
-/// A slower ball counts as stopped, m/s.
-const STOPPED_SPEED_MAX_M_S: f32 = 0.15;
-/// A kick is known by its speed only after a few snapshots, s.
-const KICK_KNOWN_AFTER_S: f32 = 0.3;
-/// Distance from x* within which a receiver counts as there, and a ball as arrived, m: two robots' radii and
-/// the ball.
-const ARRIVED_WITHIN_M: f32 = 0.2;
-/// A pass that has not left by then counts as not kicked: the time in which it may be searched
-/// ([`super::ahead::SEARCH_TIME`]), and a second for the kick.
-const KICK_TIME_MAX: Duration = Duration::millis(5000);
-/// Time in which a receiver that missed it may still reach it, s.
-const COLLECTED_TIME_MAX_S: f32 = 1.5;
 
 #[cfg(test)]
 mod tests;

@@ -10,6 +10,12 @@ use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 /// Radii of a body and of the ball together, m: a ball whose centre comes nearer to a robot's centre is
 /// blocked.
 pub const BODY: f32 = ROBOT_RADIUS + BALL_RADIUS;
+/// Bodies that can block at the same time: all of both teams on the largest field.
+pub const BODIES_MAX: usize = 2 * rules::limits::ROBOTS_MAX;
+/// Least distance of a view from the goal line, m: nearer, its posts are a straight line.
+const BEFORE_LINE_MIN_M: f32 = 0.05;
+/// Smaller angles count as 0, rad: they need a body 110 m away.
+const ANGLE_MIN_RAD: f32 = 1e-3;
 
 /// The goal as seen from a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,9 +31,9 @@ pub struct Opening {
 /// A range of directions, rad from the opening's middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Its right end, rad.
+    /// Right end of the gap, rad.
     pub right: f32,
-    /// Its left end, rad.
+    /// Left end of the gap, rad.
     pub left: f32,
 }
 
@@ -122,13 +128,6 @@ pub fn half_shadow(distance: f32) -> f32 {
 pub fn distance_for(half: f32) -> f32 {
     BODY / math::sin_cos(half.clamp(ANGLE_MIN_RAD, math::FRAC_PI_2)).0
 }
-
-/// Bodies that can block at the same time: all of both teams on the largest field.
-pub const BODIES_MAX: usize = 2 * rules::limits::ROBOTS_MAX;
-/// Least distance of a view from the goal line, m: nearer, its posts are a straight line.
-const BEFORE_LINE_MIN_M: f32 = 0.05;
-/// Smaller angles count as 0, rad: they need a body 110 m away.
-const ANGLE_MIN_RAD: f32 = 1e-3;
 
 #[cfg(test)]
 mod tests {

@@ -12,6 +12,14 @@ use super::edge::Edge;
 use super::receiving::FirstLevel;
 use super::{Assignment, Guards, Kept, Memory, ThreatSettings};
 
+/// Primaries have passed each other when they are past by this, m along the edge: a body's radius and more
+/// than noise.
+const PASSED_BY_M: f32 = 0.12;
+/// Two robots do not both stand within this, m: two bodies and a margin between.
+const TAKEN_WITHIN_M: f32 = 0.2;
+/// A new place keeps this much more distance from others, m.
+const TAKEN_MARGIN_M: f32 = 0.1;
+
 type Assignments = heapless::Vec<Assignment, ROBOTS_MAX>;
 
 /// A place of a primary defender, and its robot.
@@ -23,7 +31,7 @@ struct Primary {
     needed: bool,
 }
 
-/// What our defence faces: the first-level threat, its cover, and the opponents that may become one.
+/// Threats that our defence faces: the first-level threat, its cover, and the opponents that may become one.
 #[derive(Clone, Copy)]
 pub(super) struct Assessment<'t> {
     pub(super) threat: &'t FirstLevel,
@@ -248,7 +256,7 @@ impl Giving<'_> {
         self.given.iter().any(|other| other.at.distance(at) < room)
     }
 
-    /// Where the edge crosses the line from our goal to the opponent, beside the primary that is needed.
+    /// Crossing of the edge and the line from our goal to the opponent, beside the primary that is needed.
     fn edge_place(&self, position: &Position, cover: &Cover) -> Point<Attack> {
         let goal = self.view.our_goal();
         let at = self.edge.crossing(goal, position.danger.at - goal);
@@ -262,11 +270,3 @@ impl Giving<'_> {
         beside(&self.edge, self.edge.along(*primary), towards, self.settings)
     }
 }
-
-/// Primaries have passed each other when they are past by this, m along the edge: a body's radius and more
-/// than noise.
-const PASSED_BY_M: f32 = 0.12;
-/// Two robots do not both stand within this, m: two bodies and a margin between.
-const TAKEN_WITHIN_M: f32 = 0.2;
-/// A new place keeps this much more distance from others, m.
-const TAKEN_MARGIN_M: f32 = 0.1;

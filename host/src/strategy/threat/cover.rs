@@ -18,6 +18,11 @@ use super::ThreatSettings;
 use super::angle::{Opening, distance_for, half_shadow, widest};
 use super::edge::Edge;
 
+/// Rounds after which a place that depends on its own distance moves by less than a millimetre.
+const ROUNDS: usize = 4;
+/// Least slope of a ray towards our goal line: below, it counts as parallel to the line.
+const SLOPE_MIN: f32 = 1e-3;
+
 /// The three placements of the paper, by the bodies needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Case {
@@ -45,9 +50,9 @@ pub struct Cover {
     pub case: Case,
     /// The goal as seen from the threat.
     pub opening: Opening,
-    /// Where the keeper stands.
+    /// Place of the keeper, m.
     pub keeper: Point<Attack>,
-    /// Where the primary defenders stand that are needed, from −y to +y along the edge.
+    /// Places of the primary defenders that are needed, from −y to +y along the edge.
     pub primaries: heapless::Vec<Point<Attack>, 2>,
     /// The part of the open angle that bodies at these places leave open, rad.
     pub uncovered: f32,
@@ -114,7 +119,7 @@ impl<'v> Placing<'v> {
         place.distance(self.opening.from)
     }
 
-    /// Where the ray `off` the middle crosses our goal line.
+    /// Crossing of the ray `off` the middle and our goal line.
     fn on_goal_line(&self, off: f32) -> Point<Attack> {
         let (from, direction) = (self.opening.from, self.opening.direction(off));
         let (goal, half) = (self.view.our_goal(), self.view.field.goal_width * 0.5);
@@ -128,7 +133,7 @@ impl<'v> Placing<'v> {
         self.edge.crossing(end, self.opening.from - end)
     }
 
-    /// In front of the middle of the goal.
+    /// Place in front of the middle of the goal.
     fn before_goal(&self) -> Point<Attack> {
         self.view.our_goal() + Vector::new(self.settings.keeper_back, 0.0)
     }
@@ -268,11 +273,6 @@ pub(super) fn beside(edge: &Edge, along: f32, towards: f32, settings: &ThreatSet
     }
     edge.point(along + towards * off)
 }
-
-/// Rounds after which a place that depends on its own distance moves by less than a millimetre.
-const ROUNDS: usize = 4;
-/// Least slope of a ray towards our goal line: below, it counts as parallel to the line.
-const SLOPE_MIN: f32 = 1e-3;
 
 #[cfg(test)]
 mod tests;

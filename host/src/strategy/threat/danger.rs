@@ -14,12 +14,19 @@ use super::edge::Edge;
 use super::receiving::{Because, FirstLevel};
 use super::{Memory, ThreatSettings, legal};
 
+/// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
+const HAS_BALL_WITHIN_M: f32 = 0.2;
+/// Passes arrive with this speed, m/s, at which a receiver can shoot at once.
+const PASS_ARRIVAL_M_S: f32 = 2.5;
+/// Fastest shot, m/s: the rules' 6.5 less a kicker's error.
+const SHOT_SPEED_M_S: f32 = 6.2;
+
 /// An opponent as a second-level threat, with its two positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Danger {
     /// Number of the opponent.
     pub opponent: RobotId,
-    /// Its place, attack frame, m.
+    /// Place of the opponent, attack frame, m.
     pub at: Point<Attack>,
     /// Whether it is near to our side.
     pub near: bool,
@@ -27,13 +34,13 @@ pub struct Danger {
     pub open: f32,
     /// Time until it could have shot: the pass to it and the shot, s.
     pub time_to_shoot: f32,
-    /// Where its shot is blocked, and the share of the distance from our goal to it, 0–1.
+    /// Place where its shot is blocked, and the share of the distance from our goal to it, 0–1.
     pub block_shot: (Point<Attack>, f32),
-    /// Where the pass to it is blocked.
+    /// Place where the pass to it is blocked.
     pub block_pass: Point<Attack>,
 }
 
-/// What a defender's position blocks.
+/// Ball that a defender's position blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Blocks {
     /// On the line from the opponent to the middle of our goal.
@@ -47,7 +54,7 @@ pub enum Blocks {
 pub struct Position {
     /// The second-level threat that it blocks.
     pub danger: Danger,
-    /// Its shot, or the pass to it.
+    /// Whether the shot is blocked, or the pass.
     pub blocks: Blocks,
     /// Place for the defender's centre, m.
     pub at: Point<Attack>,
@@ -150,8 +157,8 @@ pub fn share(settings: &ThreatSettings) -> f32 {
     (r / (a * (0.5 * tau * tau + r / a))).min(1.0)
 }
 
-/// Both positions of every danger, best first: near opponents, then shots before passes, then the larger open
-/// angle (all above a limit alike), then the sooner shot; then by number.
+/// Positions against every danger, two each, best first: near opponents, then shots before passes, then the
+/// larger open angle (all above a limit alike), then the sooner shot; then by number.
 pub fn ranked(
     dangers: &[Danger],
     held: impl Fn(RobotId, Blocks) -> bool,
@@ -181,13 +188,6 @@ impl Position {
             .then(self.danger.opponent.cmp(&other.danger.opponent))
     }
 }
-
-/// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
-const HAS_BALL_WITHIN_M: f32 = 0.2;
-/// Passes arrive with this speed, m/s, at which a receiver can shoot at once.
-const PASS_ARRIVAL_M_S: f32 = 2.5;
-/// Fastest shot, m/s: the rules' 6.5 less a kicker's error.
-const SHOT_SPEED_M_S: f32 = 6.2;
 
 #[cfg(test)]
 mod tests {

@@ -8,6 +8,11 @@
 use geometry::{Attack, Point, Vector, math};
 use rules::{AreaForm, FieldSpec};
 
+/// A distance beyond any field, m.
+const BEYOND_FIELD_M: f32 = 32.0;
+/// 32 m halved this often: down to 1 µm.
+const HALVINGS: u32 = 25;
+
 /// The edge of our area, from our goal line at −y around to our goal line at +y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
@@ -80,12 +85,12 @@ impl Edge {
         0.5 * self.length() + side * from_middle
     }
 
-    /// Its point nearest to a place.
+    /// Point of the edge nearest to a place.
     pub fn nearest(&self, place: Point<Attack>) -> Point<Attack> {
         self.point(self.along(place))
     }
 
-    /// Where the ray from a point of our goal line in this direction leaves the edge.
+    /// Crossing of the edge and the ray from a point of our goal line in this direction.
     pub fn crossing(&self, from: Point<Attack>, direction: Vector<Attack>) -> Point<Attack> {
         let along = direction.unit().unwrap_or(Vector::new(1.0, 0.0));
         // Within at the goal line, outside at BEYOND_FIELD_M, and the region is convex.
@@ -107,11 +112,6 @@ impl Edge {
         (place.x() - self.goal.x() - self.ahead, place.y().abs() - self.beside)
     }
 }
-
-/// A distance beyond any field, m.
-const BEYOND_FIELD_M: f32 = 32.0;
-/// 32 m halved this often: down to 1 µm.
-const HALVINGS: u32 = 25;
 
 #[cfg(test)]
 mod tests {

@@ -10,6 +10,22 @@ use super::super::view::View;
 use super::ThreatSettings;
 use super::edge::Edge;
 
+/// Margin of bodies to forbidden areas in play, m: the overshoot of control; less than that of `off_area`.
+const AREA_MARGIN_IN_PLAY_M: f32 = 0.01;
+/// The same while the ball is not in play, m: the robots' own margin (0.04, `brain`'s surroundings), less
+/// rounding. Robots would not go to a nearer place.
+const AREA_MARGIN_STOPPED_M: f32 = 0.038;
+/// From the ball to other robots' centres while we place it, m: the placer goes around it, 0.28 m off, and
+/// needs a body beyond that.
+const PLACER_ROOM_M: f32 = 0.5;
+/// Least distance of two places, m: two bodies and the gap between two defenders of one line (`defence`,
+/// `BESIDE_LINE_M`).
+const PLACES_APART_MIN_M: f32 = 0.2;
+/// Spacing of the rings, m.
+const RING_SPACING_M: f32 = 0.1;
+const RINGS: u32 = 15;
+const SPOKES: u32 = 24;
+
 /// The nearest place to `at` where a field player may stand: within the lines, out of our area (at its edge),
 /// and off everything else that the phase forbids.
 pub fn legal(view: &View, at: Point<Attack>, settings: &ThreatSettings) -> Point<Attack> {
@@ -80,8 +96,8 @@ fn in_the_way(view: &View, rule_role: RuleRole, at: Point<Attack>) -> bool {
     placed && view.ball.is_some_and(|ball| ball.position.distance(at) < PLACER_ROOM_M)
 }
 
-/// Where a body of that role must not be, in the attack frame: we defend −x in it, as a team of that end does
-/// on the field.
+/// Places where a body of that role must not be, in the attack frame: we defend −x in it, as a team of that
+/// end does on the field.
 fn forbidden_to(view: &View, rule_role: RuleRole) -> KeepOut {
     let on_field = |at: Point<Attack>| Point::<Field>::new(at.x(), at.y());
     keep_out(&Situation {
@@ -94,22 +110,6 @@ fn forbidden_to(view: &View, rule_role: RuleRole) -> KeepOut {
         ball_in_play: false,
     })
 }
-
-/// Margin of bodies to forbidden areas in play, m: the overshoot of control; less than that of `off_area`.
-const AREA_MARGIN_IN_PLAY_M: f32 = 0.01;
-/// The same while the ball is not in play, m: the robots' own margin (0.04, `brain`'s surroundings), less
-/// rounding. Robots would not go to a nearer place.
-const AREA_MARGIN_STOPPED_M: f32 = 0.038;
-/// From the ball to other robots' centres while we place it, m: the placer goes around it, 0.28 m off, and
-/// needs a body beyond that.
-const PLACER_ROOM_M: f32 = 0.5;
-/// Least distance of two places, m: two bodies and the gap between two defenders of one line (`defence`,
-/// `SHOULDER`).
-const PLACES_APART_MIN_M: f32 = 0.2;
-/// Spacing of the rings, m.
-const RING_SPACING_M: f32 = 0.1;
-const RINGS: u32 = 15;
-const SPOKES: u32 = 24;
 
 #[cfg(test)]
 mod tests {

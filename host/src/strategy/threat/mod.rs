@@ -73,7 +73,7 @@ pub struct ThreatSettings {
     pub open_worth: f32,
     /// Bonus on the time to shoot of a defended opponent, s.
     pub time_worth: f32,
-    /// How strongly opponents and our defenders speed up, m/s².
+    /// Acceleration of opponents and our defenders, m/s².
     pub acceleration: f32,
     /// Delay from an opponent's start to our robot's, s: camera to wheels are 0.05–0.07 s in the league, a
     /// tick of ours and theirs more.
@@ -133,11 +133,11 @@ pub enum Guards {
     SecondLevel {
         /// Number of the opponent.
         opponent: RobotId,
-        /// Its shot, or the pass to it.
+        /// Whether the shot is blocked, or the pass.
         blocks: Blocks,
-        /// Its place among all positions, from 0.
+        /// Rank among all positions, from 0.
         rank: usize,
-        /// Its open angle on our goal, rad.
+        /// Open angle of the opponent on our goal, rad.
         open: f32,
         /// Time until it could shoot: pass and shot, s.
         time_to_shoot: f32,

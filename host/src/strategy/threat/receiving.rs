@@ -38,11 +38,11 @@ pub fn isocontour(speed: f32, c: f32, risk: f32) -> (f32, f32, f32) {
 pub struct FirstLevel {
     /// The place that keeper and primary defenders guard against.
     pub at: Point<Attack>,
-    /// What the first-level threat is.
+    /// Kind of the first-level threat.
     pub because: Because,
 }
 
-/// What the first-level threat is.
+/// Kind of the first-level threat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Because {
     /// The ball itself, at its place.

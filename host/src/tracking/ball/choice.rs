@@ -9,6 +9,24 @@ use crate::tracking::robots::micros;
 use crate::tracking::scene::Scene;
 use crate::tracking::seen::{BallSeen, Captured, Frame};
 
+/// Camera frames that make a blob the ball when there is none.
+const FRAMES_TO_BELIEVE: u16 = 2;
+/// Camera frames that make a blob the ball when there is one that is not visible.
+const FRAMES_TO_TAKE_OVER: u16 = 5;
+/// Time without detection after which another ball may be chosen, s: six frames of 60 Hz.
+const REPLACED_AFTER_S: f32 = 0.1;
+/// An unseen ball is forgotten after this time, s; at a robot's front, where robots hide balls, this time is
+/// longer.
+const FORGOTTEN_AFTER_S: f32 = 1.0;
+const HELD_FORGOTTEN_AFTER_S: f32 = 3.0;
+/// Other balls are forgotten sooner, s.
+const OTHER_FORGOTTEN_AFTER_S: f32 = 0.3;
+/// Two blobs of one camera frame nearer than this are one ball, m: its diameter.
+const SAME_BALL_WITHIN_M: f32 = 0.045;
+/// A flying ball appears at most this far from its parabola, m; farther, it is another ball or has hit
+/// something.
+const FLIGHT_GATE_M: f32 = 0.4;
+
 impl Balls {
     /// The blob nearest to where the ball is expected in the camera frame, if one can be it.
     pub(super) fn nearest_to_chosen(&self, frame: &Frame, around: Around<'_>) -> Option<usize> {
@@ -113,21 +131,3 @@ impl Balls {
         (self.air, self.kicked, self.contact) = (Air::Down, None, None);
     }
 }
-
-/// Camera frames that make a blob the ball when there is none.
-const FRAMES_TO_BELIEVE: u16 = 2;
-/// Camera frames that make a blob the ball when there is one that is not visible.
-const FRAMES_TO_TAKE_OVER: u16 = 5;
-/// Time without detection after which another ball may be chosen, s: six frames of 60 Hz.
-const REPLACED_AFTER_S: f32 = 0.1;
-/// An unseen ball is forgotten after this time, s; at a robot's front, where robots hide balls, this time is
-/// longer.
-const FORGOTTEN_AFTER_S: f32 = 1.0;
-const HELD_FORGOTTEN_AFTER_S: f32 = 3.0;
-/// Other balls are forgotten sooner, s.
-const OTHER_FORGOTTEN_AFTER_S: f32 = 0.3;
-/// Two blobs of one camera frame nearer than this are one ball, m: its diameter.
-const SAME_BALL_WITHIN_M: f32 = 0.045;
-/// A flying ball appears at most this far from its parabola, m; farther, it is another ball or has hit
-/// something.
-const FLIGHT_GATE_M: f32 = 0.4;

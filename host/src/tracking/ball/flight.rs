@@ -18,6 +18,41 @@ use super::super::seen::Captured;
 use crate::world::GRAVITY_M_S2;
 use protocol::Who;
 
+/// p₀ and v along x and y, and climb or deceleration.
+const UNKNOWNS: usize = 5;
+/// Detections of one flight: 0.4 s and more; later ones improve little.
+const SAMPLES_MAX: usize = 48;
+/// Detections nearer in time to each other than this add nothing, s: four cameras that see the ball at once.
+const SAMPLES_APART_S: f32 = 0.006;
+/// Fewer detections, or a shorter time (s), do not distinguish a flight from a flat kick: in 60 ms a ball
+/// that rises with 2 m/s is 0.1 m high, which appears as 25 mm at one metre from below a camera 4 m high.
+const SAMPLES_MIN: usize = 5;
+const TIME_MIN_S: f32 = 0.06;
+/// Offsets tried around the kick's moment by two detections, in units of its uncertainty.
+const MOMENT_SHIFTS_SIGMA: [f32; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
+/// Uncertainty of the moment by a turn, s: half a frame.
+pub(super) const MOMENT_SIGMA_SHARP_S: f32 = 0.008;
+/// Uncertainty of the moment of a turn that was detected late, s: two frames.
+pub(super) const MOMENT_SIGMA_VAGUE_S: f32 = 0.03;
+/// Uncertainty of the kick's place, m.
+const PLACE_SIGMA_M: f32 = 0.01;
+/// Climbs that are flights, m/s: slower ones stay below 50 mm; no robot kicks straight up with 10 m/s.
+const CLIMB_MIN_M_S: f32 = 1.0;
+const CLIMB_MAX_M_S: f32 = 10.0;
+/// No kicker launches a ball more steeply than this (tangent of 76°; chippers are built for 45°, and a
+/// launch's direction is known to some degrees after 60 ms).
+const LAUNCH_TAN_MAX: f32 = 4.0;
+/// A flight fits when its mean squared error is less than this, in variances (1 where the noise is as
+/// configured; the noise of cameras that disagree is larger).
+const FIT_VARIANCES_MAX: f32 = 6.0;
+/// A flat kick is accepted unless its summed squared error is worse by this, in variances (times the flight's
+/// own mean): 1 in 10⁶ by noise.
+const FLAT_WORSE_VARIANCES: f32 = 25.0;
+/// A flat kick decelerates by at most this much more than the field surface's sliding deceleration.
+const SLIDE_FACTOR_MAX: f32 = 1.5;
+/// Normal equations with a smaller pivot have no solution (m², s², as samples weigh 1).
+const PIVOT_MIN: f32 = 1e-9;
+
 /// A kick that is being watched.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Launch {
@@ -225,41 +260,6 @@ fn eliminate(normal: &mut [[f32; UNKNOWNS + 1]; UNKNOWNS]) -> Option<[f32; UNKNO
     }
     solution.iter().all(|x| x.is_finite()).then_some(solution)
 }
-
-/// p₀ and v along x and y, and climb or deceleration.
-const UNKNOWNS: usize = 5;
-/// Detections of one flight: 0.4 s and more; later ones improve little.
-const SAMPLES_MAX: usize = 48;
-/// Detections nearer in time to each other than this add nothing, s: four cameras that see the ball at once.
-const SAMPLES_APART_S: f32 = 0.006;
-/// Fewer detections, or a shorter time (s), do not distinguish a flight from a flat kick: in 60 ms a ball
-/// that rises with 2 m/s is 0.1 m high, which appears as 25 mm at one metre from below a camera 4 m high.
-const SAMPLES_MIN: usize = 5;
-const TIME_MIN_S: f32 = 0.06;
-/// Offsets tried around the kick's moment by two detections, in units of its uncertainty.
-const MOMENT_SHIFTS_SIGMA: [f32; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
-/// Uncertainty of the moment by a turn, s: half a frame.
-pub(super) const MOMENT_SIGMA_SHARP_S: f32 = 0.008;
-/// Where the turn was detected late, the moment is known to two frames, s.
-pub(super) const MOMENT_SIGMA_VAGUE_S: f32 = 0.03;
-/// Uncertainty of the kick's place, m.
-const PLACE_SIGMA_M: f32 = 0.01;
-/// Climbs that are flights, m/s: slower ones stay below 50 mm; no robot kicks straight up with 10 m/s.
-const CLIMB_MIN_M_S: f32 = 1.0;
-const CLIMB_MAX_M_S: f32 = 10.0;
-/// No kicker launches a ball more steeply than this (tangent of 76°; chippers are built for 45°, and a
-/// launch's direction is known to some degrees after 60 ms).
-const LAUNCH_TAN_MAX: f32 = 4.0;
-/// A flight fits when its mean squared error is less than this, in variances (1 where the noise is as
-/// configured; the noise of cameras that disagree is larger).
-const FIT_VARIANCES_MAX: f32 = 6.0;
-/// A flat kick is accepted unless its summed squared error is worse by this, in variances (times the flight's
-/// own mean): 1 in 10⁶ by noise.
-const FLAT_WORSE_VARIANCES: f32 = 25.0;
-/// A flat kick decelerates by at most this much more than the field surface's sliding deceleration.
-const SLIDE_FACTOR_MAX: f32 = 1.5;
-/// Normal equations with a smaller pivot have no solution (m², s², as samples weigh 1).
-const PIVOT_MIN: f32 = 1e-9;
 
 #[cfg(test)]
 mod tests {

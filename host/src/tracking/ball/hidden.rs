@@ -15,6 +15,15 @@ use rules::{Colour, Phase};
 use crate::referee::Game;
 use crate::world::{Ball, Robot, World};
 
+/// A ball this near the middle of a robot's front may lie in its dribbler opening, m: the opening's half
+/// width and the vision's noise.
+const HIDES_WITHIN_M: f32 = 0.06;
+/// Time unseen after which a robot's sensor decides whether it has the ball: two telemetry periods, and
+/// vision's delay.
+const SENSOR_DECIDES_AFTER: Duration = Duration::millis(300);
+/// An opponent's front is this near a ball that it takes off ours, m: a robot's diameter.
+const TAKES_WITHIN_M: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
+
 /// The ball's last visible state, and its placement.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HiddenBall {
@@ -22,7 +31,7 @@ pub(crate) struct HiddenBall {
     last: Option<Ball>,
     /// The opponent that hides it from all cameras, if one does.
     by: Option<Who>,
-    /// Where it was placed for the restart that is to come.
+    /// Place where it was put for the restart that is to come.
     placed: Option<Point<Field>>,
 }
 
@@ -87,15 +96,6 @@ impl HiddenBall {
 fn dribbler_point(robot: &Robot) -> Point<Field> {
     robot.pose.to_field(Point::new(rules::limits::ROBOT_RADIUS, 0.0))
 }
-
-/// A ball this near the middle of a robot's front may lie in its dribbler opening, m: the opening's half
-/// width and the vision's noise.
-const HIDES_WITHIN_M: f32 = 0.06;
-/// Time unseen after which a robot's sensor decides whether it has the ball: two telemetry periods, and
-/// vision's delay.
-const SENSOR_DECIDES_AFTER: Duration = Duration::millis(300);
-/// An opponent's front is this near a ball that it takes off ours, m: a robot's diameter.
-const TAKES_WITHIN_M: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
 
 #[cfg(test)]
 mod tests {

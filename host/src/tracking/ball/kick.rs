@@ -16,6 +16,37 @@ use crate::tracking::seen::Captured;
 use crate::world::BallModels;
 use protocol::Who;
 
+/// A robot whose centre is this near the ball may have touched it, m.
+const TOUCHES_WITHIN_M: f32 = rules::contact::TOUCHES_WITHIN;
+/// A robot this near can have turned the ball, m: hull, ball, and 7 cm that the robot moved since.
+const TURNS_WITHIN_M: f32 = 0.18;
+/// A contact ends this long after its last detection, s.
+const CONTACT_KEPT_S: f32 = 0.1;
+/// A contact is kept for this long, s, for chips that are detected late, within this distance, m.
+const CHIP_CONTACT_KEPT_S: f32 = 0.25;
+const CHIP_CONTACT_WITHIN_M: f32 = 0.4;
+/// Slower balls are not kicked but rolled, m/s.
+const KICK_SPEED_MIN_M_S: f32 = 0.5;
+/// A kick makes the ball faster by this, m/s.
+const KICK_GAIN_MIN_M_S: f32 = 0.3;
+/// A kick is also a change of velocity at a robot's front by this, m/s.
+const KICK_TURN_MIN_M_S: f32 = 0.8;
+/// Where the old path and the new one are farther apart than this, the ball was placed there by hand or by a
+/// script, m.
+const PLACED_GAP_MIN_M: f32 = 0.3;
+/// A kicked ball has stopped below this speed, m/s.
+const STOPPED_SPEED_M_S: f32 = 0.05;
+/// A flat kick's speed is computed from the distance covered in this time after it, s: two frames, until
+/// robots may intercept it.
+const REFINE_FROM_S: f32 = 0.03;
+const REFINE_TO_S: f32 = 0.15;
+/// Each step doubles the digits; the start is within a third.
+const NEWTON_STEPS: usize = 3;
+/// Uncertainty of a fitted flight's velocity, m/s, a landing's place, m, and the speed after a bounce, m/s.
+const FLIGHT_SIGMA_M_S: f32 = 0.2;
+const LANDING_SIGMA_M: f32 = 0.05;
+const BOUNCE_SIGMA_M_S: f32 = 0.7;
+
 /// State of the ball's height.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) enum Air {
@@ -24,7 +55,7 @@ pub(super) enum Air {
     Down,
     /// Just kicked: a flight would be detected soon.
     Watched(Launch),
-    /// In its first hop, estimated from these detections.
+    /// A ball in its first hop, estimated from these detections.
     Flying(Launch, Flight),
     /// Bouncing after its first touch.
     Hopping(Flight),
@@ -307,34 +338,3 @@ fn is_in_front(robot: &Moved, ball: Point<Field>) -> bool {
     let ball = robot.pose.to_body(ball);
     ball.x() > 0.0 && ball.y().abs() <= ball.x()
 }
-
-/// A robot whose centre is this near the ball may have touched it, m.
-const TOUCHES_WITHIN_M: f32 = rules::contact::TOUCHES_WITHIN;
-/// A robot this near can have turned the ball, m: hull, ball, and 7 cm that the robot moved since.
-const TURNS_WITHIN_M: f32 = 0.18;
-/// A contact ends this long after its last detection, s.
-const CONTACT_KEPT_S: f32 = 0.1;
-/// A contact is kept for this long, s, for chips that are detected late, within this distance, m.
-const CHIP_CONTACT_KEPT_S: f32 = 0.25;
-const CHIP_CONTACT_WITHIN_M: f32 = 0.4;
-/// Slower balls are not kicked but rolled, m/s.
-const KICK_SPEED_MIN_M_S: f32 = 0.5;
-/// A kick makes the ball faster by this, m/s.
-const KICK_GAIN_MIN_M_S: f32 = 0.3;
-/// A kick is also a change of velocity at a robot's front by this, m/s.
-const KICK_TURN_MIN_M_S: f32 = 0.8;
-/// Where the old path and the new one are farther apart than this, the ball was placed there by hand or by a
-/// script, m.
-const PLACED_GAP_MIN_M: f32 = 0.3;
-/// A kicked ball has stopped below this speed, m/s.
-const STOPPED_SPEED_M_S: f32 = 0.05;
-/// A flat kick's speed is computed from the distance covered in this time after it, s: two frames, until
-/// robots may intercept it.
-const REFINE_FROM_S: f32 = 0.03;
-const REFINE_TO_S: f32 = 0.15;
-/// Each step doubles the digits; the start is within a third.
-const NEWTON_STEPS: usize = 3;
-/// Uncertainty of a fitted flight's velocity, m/s, a landing's place, m, and the speed after a bounce, m/s.
-const FLIGHT_SIGMA_M_S: f32 = 0.2;
-const LANDING_SIGMA_M: f32 = 0.05;
-const BOUNCE_SIGMA_M_S: f32 = 0.7;

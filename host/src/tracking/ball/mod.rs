@@ -23,6 +23,14 @@ use super::scene::Scene;
 use super::seen::{BallSeen, Captured, Frame};
 use crate::world::{Ball, Kick};
 
+/// Tracks at once: more balls do not occur in a game.
+const TRACKS_MAX: usize = 6;
+/// Time after which it counts as unseen, s: two to three frames of 60 Hz.
+const UNSEEN_AFTER_S: f32 = 0.045;
+/// Uncertainty of a hidden ball: within a ball's radius of where it was, m; released slowly, m/s.
+const HELD_SIGMA_M: f32 = 0.02;
+const HELD_SIGMA_M_S: f32 = 0.5;
+
 /// Counts of blobs by result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct BallCounts {
@@ -163,11 +171,3 @@ impl Balls {
         })
     }
 }
-
-/// Tracks at once: more balls do not occur in a game.
-const TRACKS_MAX: usize = 6;
-/// Time after which it counts as unseen, s: two to three frames of 60 Hz.
-const UNSEEN_AFTER_S: f32 = 0.045;
-/// Uncertainty of a hidden ball: within a ball's radius of where it was, m; released slowly, m/s.
-const HELD_SIGMA_M: f32 = 0.02;
-const HELD_SIGMA_M_S: f32 = 0.5;

@@ -13,12 +13,37 @@ use super::super::robots::seconds;
 use super::super::seen::{BallSeen, Captured};
 use crate::world::BallModels;
 
+/// White acceleration of a rolling ball, m²/s³: `steady` is a field surface that decelerates it 0.3 m/s² more
+/// or less than configured; `changing` is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
+const FREEDOM: Freedom = Freedom { steady: 0.02, changing: 8.0 };
+/// A detection is an outlier when its distance squared is more variances than this ...
+const OUTLIER_VARIANCES_MIN: f32 = 20.0;
+/// An outlier is farther than this off, m: noise between cameras is no turn.
+const OUTLIER_DISTANCE_MIN_M: f32 = 0.012;
+/// Standard deviation of a new ball's speed, m/s.
+const SPEED_SIGMA_M_S: f32 = 2.0;
+/// Uncertainty of a turned ball's speed besides the noise of two detections, m/s.
+const TURN_SIGMA_M_S: f32 = 0.3;
+/// Fastest ball, m/s: robots are allowed 6.5, kickers without a limit give 10 or so.
+const SPEED_MAX_M_S: f32 = 15.0;
+/// Largest distance of a detection from its prediction, m, and its growth for every second unseen (m/s), up
+/// to a time (s).
+const GATE_M: f32 = 0.1;
+const GATE_GROWTH_M_S: f32 = 10.0;
+const GATE_TIME_MAX_S: f32 = 0.15;
+/// Detections nearer to each other are of one tick, µs.
+const TICK_US: Captured = 5_000;
+/// Camera frames after which confidence is full.
+const FRAMES_FULL: u16 = 8;
+/// Weight of the newest detection in the quality.
+const QUALITY_SHARE: f32 = 0.1;
+
 /// A blob and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Glimpse {
     /// On the ground; for a ball in the air, below it.
     pub(super) position: Point<Field>,
-    /// Where the camera saw it on the field surface.
+    /// Place at which the camera saw it on the field surface.
     pub(super) apparent: Point<Field>,
     pub(super) camera: u32,
     pub(super) at: Captured,
@@ -47,7 +72,7 @@ pub(super) struct Track {
     counted: Captured,
     pub(super) images: u16,
     quality: f32,
-    /// It slides above this speed, m/s.
+    /// Speed above which the ball slides, m/s.
     pub(super) rolls_below: f32,
     strange: Option<Glimpse>,
 }
@@ -66,7 +91,7 @@ impl Track {
         }
     }
 
-    /// Its place at `at` if no robot touches it, and its velocity.
+    /// Place and velocity of the ball at `at` if no robot touches it.
     pub(super) fn moved(&self, at: Captured, models: &BallModels) -> (Point<Field>, Vector<Field>) {
         let dt = seconds(at - self.at);
         if dt <= 0.0 {
@@ -157,28 +182,3 @@ impl Track {
         (freshness * often * self.quality).clamp(0.0, 1.0)
     }
 }
-
-/// White acceleration of a rolling ball, m²/s³: `steady` is a field surface that decelerates it 0.3 m/s² more or
-/// less than configured; `changing` is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
-const FREEDOM: Freedom = Freedom { steady: 0.02, changing: 8.0 };
-/// A detection is an outlier when its distance squared is more variances than this ...
-const OUTLIER_VARIANCES_MIN: f32 = 20.0;
-/// An outlier is farther than this off, m: noise between cameras is no turn.
-const OUTLIER_DISTANCE_MIN_M: f32 = 0.012;
-/// Standard deviation of a new ball's speed, m/s.
-const SPEED_SIGMA_M_S: f32 = 2.0;
-/// Uncertainty of a turned ball's speed besides the noise of two detections, m/s.
-const TURN_SIGMA_M_S: f32 = 0.3;
-/// Fastest ball, m/s: robots are allowed 6.5, kickers without a limit give 10 or so.
-const SPEED_MAX_M_S: f32 = 15.0;
-/// Largest distance of a detection from its prediction, m, and its growth for every second unseen (m/s), up
-/// to a time (s).
-const GATE_M: f32 = 0.1;
-const GATE_GROWTH_M_S: f32 = 10.0;
-const GATE_TIME_MAX_S: f32 = 0.15;
-/// Detections nearer to each other are of one tick, µs.
-const TICK_US: Captured = 5_000;
-/// Camera frames after which confidence is full.
-const FRAMES_FULL: u16 = 8;
-/// Weight of the newest detection in the quality.
-const QUALITY_SHARE: f32 = 0.1;
