@@ -23,7 +23,7 @@ pub(crate) struct FlashArgs {
     /// The board, by its directory's name: its image is built, and flashed.
     #[arg(long, value_name = "BOARD", default_value = "stm32", value_parser = parsers::real_board)]
     board: &'static Board,
-    /// The robot's description, a file or a built-in name (docs/robots.md); by default what this program is
+    /// The robot's arguments, a file or a built-in name (docs/robots.md); by default what this program is
     /// built for.
     #[arg(long, value_name = "FILE", conflicts_with = "elf")]
     robot: Option<String>,
@@ -61,10 +61,10 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
             }
         },
     };
-    for description in downloads(args, &image) {
-        let line = format!("{PROGRAM} {}", description.join(" "));
+    for arguments in downloads(args, &image) {
+        let line = format!("{PROGRAM} {}", arguments.join(" "));
         note!("onetwo: {line}");
-        match Command::new(PROGRAM).args(&description).status() {
+        match Command::new(PROGRAM).args(&arguments).status() {
             Ok(status) if status.success() => {}
             Ok(status) => {
                 return Err(FirmwareError::Flasher(line, status).into());
@@ -116,7 +116,7 @@ mod tests {
             probe: None,
         };
         let lines: Vec<_> =
-            downloads(&args, Path::new("image")).iter().map(|description| description.join(" ")).collect();
+            downloads(&args, Path::new("image")).iter().map(|arguments| arguments.join(" ")).collect();
         assert_eq!(
             lines,
             [
