@@ -28,7 +28,7 @@ pub(crate) struct TeamCycles {
     awaited: Option<Awaited>,
     /// The newest decision.
     decided: Option<DecisionNote>,
-    /// The decisions reported_decisions by the last call, with the times at which they were received.
+    /// The decisions reported by the last call, with the times at which they were received.
     reported_decisions: Vec<(f64, DecisionNote)>,
 }
 
@@ -67,7 +67,7 @@ impl TeamCycles {
         self.receive_report(host, t, into);
     }
 
-    /// Every decision that the last call of [`Self::receive`] reported_decisions, those without an event among them.
+    /// Every decision that the last call of [`Self::receive`] reported, those without an event among them.
     pub(crate) fn reported_decisions(&self) -> &[(f64, DecisionNote)] {
         &self.reported_decisions
     }

@@ -23,7 +23,7 @@ pub(crate) struct FlashArgs {
     /// The board, by its directory's name: its image is built, and flashed.
     #[arg(long, value_name = "BOARD", default_value = "stm32", value_parser = parsers::real_board)]
     board: &'static Board,
-    /// The robot's arguments, a file or a built-in name (docs/robots.md); by default what this program is
+    /// The robot's description, a file or a built-in name (docs/robots.md); by default what this program is
     /// built for.
     #[arg(long, value_name = "FILE", conflicts_with = "elf")]
     robot: Option<String>,

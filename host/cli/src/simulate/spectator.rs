@@ -1,5 +1,5 @@
-//! `spectator`: what the operator of `onetwo simulate` sees of the field, on the terminal and on the page, and
-//! our own tracker beside it.
+//! `spectator`: what the operator of `onetwo simulate` sees of the field, on the terminal and on the page,
+//! and our own tracker beside it.
 
 use std::net::SocketAddr;
 use std::time::Duration;
