@@ -19,23 +19,17 @@ pub(crate) enum Failure {
     Recording {
         /// `stem` of what could not be begun; none where what was begun is not whole.
         stem: Option<PathBuf>,
-        /// The operating system's reason.
         error: io::Error,
     },
     /// A Markdown file without a place for figures.
     Markdown {
-        /// The file.
         file: PathBuf,
-        /// The mark that it lacks.
         error: report::MarkerError,
     },
-    /// Threads cannot be started.
     Threads(rayon::ThreadPoolBuildError),
     /// The list of refused changes beside a library cannot be read.
     Refusals(String),
-    /// Stdin cannot be read.
     Input(io::Error),
-    /// Stdout cannot be written.
     Output(io::Error),
     /// An error with a text of its own.
     Other(Box<dyn Error + Send + Sync>),

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use clap::{Args, Command};
 use clap_complete::Shell;
 
-use crate::failure::Failure;
+use crate::Failure;
 use crate::output::{print_text, printable_path};
 use crate::picture::{SnapshotError, Unwritten};
 
@@ -20,7 +20,6 @@ pub(crate) struct ManualsArgs {
     directory: PathBuf,
 }
 
-/// Writes those of `program`.
 pub(crate) fn run(args: &ManualsArgs, program: Command) -> Result<ExitCode, Failure> {
     write(&args.directory, program)
         .map_err(|error| Unwritten { file: args.directory.clone(), error: SnapshotError::Write(error) })?;

@@ -55,12 +55,12 @@ impl ColorChoice {
 }
 
 /// Prints what failed, on stderr, after the word `error:`, which is red and bold where messages are coloured.
-pub(crate) fn print_error(description: &dyn Display) {
+pub(crate) fn print_error(error: &dyn Display) {
     let (on, off) = if COLOURED.load(Ordering::Relaxed) { ("\u{1b}[1;31m", "\u{1b}[0m") } else { ("", "") };
-    program_log().add(LogLevel::Error, "program", None, &format!("error: {description}"));
+    program_log().add(LogLevel::Error, "program", None, &format!("error: {error}"));
     let mut raw = io::stderr().lock();
     let _ = write!(raw, "{on}error:{off} ");
-    let _ = writeln!(Printable::new(raw), "{description}");
+    let _ = writeln!(Printable::new(raw), "{error}");
 }
 
 /// Stdout for many lines; it has to be flushed.
@@ -69,9 +69,9 @@ pub(crate) fn lines() -> BufWriter<Printable<StdoutLock<'static>>> {
 }
 
 /// Prints on stdout, whole or not at all; a reader that closed it has read enough.
-pub(crate) fn print_text(description: &str) -> Result<(), Failure> {
+pub(crate) fn print_text(text: &str) -> Result<(), Failure> {
     let mut out = Printable::new(io::stdout().lock());
-    out.write_all(description.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)
 }
 
 /// A value as a line of JSON.
@@ -96,21 +96,21 @@ fn level(line: &str) -> LogLevel {
 }
 
 /// Prints a line on stderr, and keeps it in the program's log. If stderr is closed the line is only kept.
-pub(crate) fn print_aside(description: Arguments<'_>) {
-    let line = description.to_string();
+pub(crate) fn print_aside(text: Arguments<'_>) {
+    let line = text.to_string();
     program_log().add(level(&line), "program", None, &line);
-    print_secret(description);
+    print_secret(text);
 }
 
 /// Prints a line on stderr that no viewer of the page may read: it has the page's token.
-pub(crate) fn print_secret(description: Arguments<'_>) {
+pub(crate) fn print_secret(line: Arguments<'_>) {
     let mut out = Printable::new(io::stderr().lock());
-    let _ = writeln!(out, "{description}");
+    let _ = writeln!(out, "{line}");
 }
 
 /// Prints a line on stderr, as `eprintln!` would.
 macro_rules! note {
-    ($($description:tt)*) => { $crate::output::print_aside(format_args!($($description)*)) };
+    ($($text:tt)*) => { $crate::output::print_aside(format_args!($($text)*)) };
 }
 pub(crate) use note;
 

@@ -100,7 +100,6 @@ const EXIT_CODES: &str = "\
 Exit codes: 0 played to its end; 1 it could not be played or recorded; 2 wrong usage. With --headless a first Ctrl-C (or SIGTERM) ends
 the match in order: recordings are closed, the summary is printed, and the exit code is 130 (or 143). A second one ends it at once.";
 
-/// `onetwo play`.
 pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     ensure_built_for(args.robot.as_deref())?;
     let mut config = GameConfig::new(args.league, args.seed, args.duration).between(args.blue, args.yellow);

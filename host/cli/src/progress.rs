@@ -21,7 +21,7 @@ pub(crate) struct Progress(Mutex<Line>);
 #[derive(Debug)]
 struct Line {
     visible: bool,
-    description: String,
+    prefix: String,
     unit: &'static str,
     done: u64,
     of: Option<u64>,
@@ -51,13 +51,13 @@ impl Progress {
 
     fn new(unit: &'static str, of: Option<u64>) -> Self {
         let (visible, start) = (io::stderr().is_terminal(), (Instant::now(), 0));
-        Self(Mutex::new(Line { visible, description: String::new(), unit, done: 0, of, start, drawn: None }))
+        Self(Mutex::new(Line { visible, prefix: String::new(), unit, done: 0, of, start, drawn: None }))
     }
 
     /// The text before the bar, or all of the line where the end is not known.
-    pub(crate) fn set_text(&self, description: impl Into<String>) {
+    pub(crate) fn set_text(&self, prefix: impl Into<String>) {
         let mut line = self.line();
-        line.description = description.into();
+        line.prefix = prefix.into();
         line.draw();
     }
 
@@ -134,16 +134,12 @@ impl Line {
 
     fn text(&self, now: Instant) -> String {
         let Some(of) = self.of else {
-            return if self.description.is_empty() {
-                self.done.to_string()
-            } else {
-                self.description.clone()
-            };
+            return if self.prefix.is_empty() { self.done.to_string() } else { self.prefix.clone() };
         };
         let full = (BAR_WIDTH * self.done.min(of)).checked_div(of).unwrap_or(0) as usize;
         let bar = "█".repeat(full) + &"░".repeat(BAR_WIDTH as usize - full);
-        let gap = if self.description.is_empty() { "" } else { " " };
-        let mut text = format!("{}{gap}{bar} {}/{of}", self.description, self.done);
+        let gap = if self.prefix.is_empty() { "" } else { " " };
+        let mut text = format!("{}{gap}{bar} {}/{of}", self.prefix, self.done);
         if !self.unit.is_empty() {
             let _ = write!(text, " {}", self.unit);
         }

@@ -14,16 +14,13 @@ use crate::output::note;
 /// Why a description cannot be used.
 #[derive(Debug, Error)]
 pub(crate) enum DescriptionError {
-    /// There is no such file.
     #[error("{0}")]
     Unreadable(Unreadable),
-    /// Findings, one a line.
     #[error("{}", lines(.0))]
     Faulty(Vec<Finding>),
     /// This many files or more were refused; their findings are printed already.
     #[error("{}", refused(*.0))]
     Refused(usize),
-    /// Another robot than the one that this program is built for.
     #[error(
         "this program is built for the robot {built_for}; {} differs in {} keys ({}). Build it for that robot, in a \
          clone of the project: {VARIABLE}={} cargo run --release -- …",
@@ -32,37 +29,20 @@ pub(crate) enum DescriptionError {
         shown(keys),
         excerpt(asked, NAME_LEN)
     )]
-    OtherRobot {
-        /// The description that was given.
-        asked: String,
-        /// Name of the robot that this program is built for.
-        built_for: &'static str,
-        /// Keys whose values differ.
-        keys: Vec<&'static str>,
-    },
-    /// A built-in description cannot be changed.
+    OtherRobot { asked: String, built_for: &'static str, keys: Vec<&'static str> },
     #[error(
         "{name} comes with the program; keep a copy of it and change that: onetwo robot show {0} --text > FILE",
         name = excerpt(.0, NAME_LEN)
     )]
     BuiltIn(String),
-    /// A file of measurements cannot be read.
     #[error("{}: {what}", printable_path(file))]
-    Measurements {
-        /// The file.
-        file: PathBuf,
-        /// Fault, with the line and the remedy.
-        what: String,
-    },
-    /// The measurements give no value.
+    Measurements { file: PathBuf, what: String },
     #[error("{key} cannot be fitted: {what}")]
     NoFit {
         /// The key that was to be fitted.
         key: &'static str,
-        /// Missing measurements, and the remedy.
         what: String,
     },
-    /// The file cannot be written.
     #[error("cannot write {}: {error}", printable_path(.0), error = .1)]
     Write(PathBuf, io::Error),
 }

@@ -87,41 +87,41 @@ impl SetupArgs {
     }
 
     /// The flags that are not at their defaults, each with a blank before it.
-    pub(crate) fn description(&self) -> String {
+    pub(crate) fn changed_flags(&self) -> String {
         use std::fmt::Write as _;
-        let mut description = String::new();
+        let mut flags = String::new();
         if let PositioningLabel::Independent = self.positioning {
-            description.push_str(" --positioning independent");
+            flags.push_str(" --positioning independent");
         }
         if let Some(retrievers) = self.retrievers {
-            let _ = write!(description, " --retrievers {retrievers}");
+            let _ = write!(flags, " --retrievers {retrievers}");
         }
         if self.loss > 0.0 {
-            let _ = write!(description, " --loss {}", self.loss);
+            let _ = write!(flags, " --loss {}", self.loss);
         }
-        let flags = [
+        let switches = [
             ("no-symmetry", self.no_symmetry),
             ("no-opponents", self.no_opponents),
             ("opponents-play-on", self.opponents_play_on),
         ];
-        for (flag, given) in flags {
+        for (flag, given) in switches {
             if given {
-                let _ = write!(description, " --{flag}");
+                let _ = write!(flags, " --{flag}");
             }
         }
         match &self.library.directory.library {
             Some(directory) => {
-                let _ = write!(description, " --library {}", directory.display());
+                let _ = write!(flags, " --library {}", directory.display());
             }
             None if self.library.league != "four-legged" => {
-                let _ = write!(description, " --league {}", self.library.league);
+                let _ = write!(flags, " --league {}", self.library.league);
             }
             None => {}
         }
         for (name, value) in self.settings.given() {
-            let _ = write!(description, " --set {name}={value}");
+            let _ = write!(flags, " --set {name}={value}");
         }
-        description
+        flags
     }
 }
 

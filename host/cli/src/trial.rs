@@ -89,7 +89,6 @@ enum BackendLabel {
     Qemu,
 }
 
-/// `onetwo trial`.
 pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     let svg = args.svg.as_deref();
     let (mut recording, mut story) = (Recording::default(), TextLog::default());
@@ -203,7 +202,7 @@ impl TrialArgs {
     /// The command that replays the same trial.
     fn again(&self, report: &TrialReport) -> String {
         use std::fmt::Write as _;
-        let mut description = format!(
+        let mut command = format!(
             "onetwo trial --scenario {} --opponents {} --approach {} --seed {}",
             self.scenario.label(),
             self.opponents.label(),
@@ -211,12 +210,12 @@ impl TrialArgs {
             self.seed
         );
         if self.profile == Profile::Robots {
-            description.push_str(" --profile robots");
+            command.push_str(" --profile robots");
         }
         if self.robots != 2 {
-            let _ = write!(description, " --robots {}", self.robots);
+            let _ = write!(command, " --robots {}", self.robots);
         }
-        description.push_str(&self.setup.description());
-        description
+        command.push_str(&self.setup.changed_flags());
+        command
     }
 }

@@ -115,13 +115,10 @@ fn simulator(text: &str, team: Colour) -> Result<SocketAddr, Failure> {
     found.ok_or_else(|| RobotError::UnknownSimulator(text.to_owned()).into())
 }
 
-/// Why a virtual robot cannot run.
 #[derive(Debug, Error)]
 enum RobotError {
-    /// Standard input begins with something else than a key.
     #[error("--with-parent: standard input begins with {0}, no key")]
     NoKey(String),
-    /// `--simulator` names no host that is known.
     #[error("unknown host in --simulator {0}; give HOST or HOST:PORT")]
     UnknownSimulator(String),
 }

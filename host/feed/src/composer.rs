@@ -27,7 +27,8 @@ use super::layers;
 use super::match_events::EventFeed;
 use super::minds::{self, Clocks, Faults};
 use super::names::Names;
-use super::overlay_builder::{OverlayBuilder, OverlayInput};
+use super::overlay_builder::OverlayBuilder;
+use super::overlay_input::OverlayInput;
 use super::possession::Possession;
 use super::raw::Images;
 use super::windows::Links;
@@ -124,10 +125,10 @@ impl Composer {
         let (world, game, field) = (feed.world(), feed.game(), feed.field());
         for host in moment.hosts {
             self.cycles[host.settings().us as usize].receive(host, t, &self.names, &mut self.match_events);
-            for description in self.faults.look(host, now) {
-                self.log.add(LogLevel::Warning, "robots", Some(t), &description);
+            for fault in self.faults.look(host, now) {
+                self.log.add(LogLevel::Warning, "robots", Some(t), &fault);
                 let team = Some(team(host.settings().us));
-                self.match_events.push(MatchEvent { team, ..MatchEvent::fault(t, description) });
+                self.match_events.push(MatchEvent { team, ..MatchEvent::fault(t, fault) });
             }
         }
         let (mut alarms, mut alarmed) = (Vec::new(), Vec::new());

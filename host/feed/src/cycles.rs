@@ -28,8 +28,8 @@ pub(crate) struct TeamCycles {
     awaited: Option<Awaited>,
     /// The newest decision.
     decided: Option<DecisionNote>,
-    /// The decisions told by the last call, with the times at which they were received.
-    told: Vec<(f64, DecisionNote)>,
+    /// The decisions reported by the last call, with the times at which they were received.
+    reported_decisions: Vec<(f64, DecisionNote)>,
 }
 
 /// A decision on the radio, with the event that tells of it.
@@ -51,7 +51,7 @@ const REPORT_WITHIN_S: f64 = 0.3;
 impl TeamCycles {
     /// Takes the newest reports of the robots; new events go to `into`.
     pub(crate) fn receive(&mut self, host: &Host, t: f64, names: &Names, into: &mut Vec<MatchEvent>) {
-        self.told.clear();
+        self.reported_decisions.clear();
         // A report may come with the beacon of the next decision.
         self.receive_report(host, t, into);
         for robot in RobotId::all() {
@@ -67,9 +67,9 @@ impl TeamCycles {
         self.receive_report(host, t, into);
     }
 
-    /// Every decision that the last call of [`Self::receive`] told, those without an event among them.
-    pub(crate) fn told(&self) -> &[(f64, DecisionNote)] {
-        &self.told
+    /// Every decision that the last call of [`Self::receive`] reported, those without an event among them.
+    pub(crate) fn reported_decisions(&self) -> &[(f64, DecisionNote)] {
+        &self.reported_decisions
     }
 
     /// The decision whose report was still awaited at the end of a recording, as the host saw it.
@@ -98,7 +98,7 @@ impl TeamCycles {
     fn tell(&mut self, own: Option<DecisionNote>, into: &mut Vec<MatchEvent>) {
         let Some(Awaited { at, rebuilt, event, .. }) = self.awaited.take() else { return };
         let note = own.unwrap_or(rebuilt);
-        self.told.push((at, note.clone()));
+        self.reported_decisions.push((at, note.clone()));
         self.decided = Some(note.clone());
         let tell = |event| MatchEvent { problem: note.problem.clone(), decided: Some(note), ..event };
         into.extend(event.map(tell));
@@ -106,9 +106,9 @@ impl TeamCycles {
 
     fn report(&mut self, event: CycleEvent, host: &Host, t: f64, names: &Names, into: &mut Vec<MatchEvent>) {
         let us = host.settings().us;
-        let made = |kind, description: String, at| {
-            let team = Some(team(us));
-            MatchEvent { t, kind, team, description, at, problem: None, decided: None }
+        let made = |kind, description: String, at| MatchEvent {
+            at,
+            ..MatchEvent::new(t, kind, Some(team(us)), description)
         };
         let of = |i: usize| self.log.cycles().get(i);
         match event {

@@ -78,15 +78,8 @@ impl Legged {
                 })
             });
             let problem = decided.as_ref().and_then(|decided| decided.problem.clone());
-            self.page.push(MatchEvent {
-                t,
-                kind,
-                team: Some(PageTeam::Blue),
-                description,
-                at: None,
-                problem,
-                decided,
-            });
+            let event = MatchEvent::new(t, kind, Some(PageTeam::Blue), description);
+            self.page.push(MatchEvent { problem, decided, ..event });
         }
     }
 
@@ -210,15 +203,7 @@ impl Watcher for Legged {
             MatchEventKind::Event
         };
         let description = format!("the trial ends: {}", report.outcome.label());
-        self.page.push(MatchEvent {
-            t,
-            kind,
-            team: Some(PageTeam::Blue),
-            description,
-            at: None,
-            problem: None,
-            decided: None,
-        });
+        self.page.push(MatchEvent::new(t, kind, Some(PageTeam::Blue), description));
         let mut scene = self.scene(moment, t + 0.04);
         scene.layers.push(page::Layer {
             name: "outcome".into(),

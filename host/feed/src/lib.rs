@@ -27,6 +27,7 @@ mod match_runner;
 mod minds;
 mod names;
 mod overlay_builder;
+mod overlay_input;
 mod parameter_feed;
 mod paths;
 mod possession;

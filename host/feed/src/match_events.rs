@@ -49,7 +49,7 @@ impl EventFeed {
                 _ => name,
             };
             let team = whose(&description);
-            into.push(MatchEvent { t, kind, team, description, at: None, problem: None, decided: None });
+            into.push(MatchEvent::new(t, kind, team, description));
         }
     }
 
@@ -57,14 +57,11 @@ impl EventFeed {
     pub(super) fn referee(&mut self, referee: &InternalReferee, t: f64, into: &mut Vec<MatchEvent>) {
         for event in referee.events().iter().skip(self.events) {
             let kind = event.what.kind();
+            let row = if kind.is_offence() { MatchEventKind::Foul } else { MatchEventKind::Event };
+            let at = Some([milli(event.place.x()), milli(event.place.y())]);
             into.push(MatchEvent {
-                t,
-                kind: if kind.is_offence() { MatchEventKind::Foul } else { MatchEventKind::Event },
-                team: event.by.map(super::team),
-                description: sentence(event),
-                at: Some([milli(event.place.x()), milli(event.place.y())]),
-                problem: None,
-                decided: None,
+                at,
+                ..MatchEvent::new(t, row, event.by.map(super::team), sentence(event))
             });
         }
         self.events = referee.events().len();
@@ -78,20 +75,11 @@ impl EventFeed {
         self.kick = Some(kick);
         let Some(by) = kick.by.filter(|_| !same) else { return };
         let how = if kick.is_chip() { "chips" } else { "kicks" };
-        into.push(MatchEvent {
-            t,
-            kind: MatchEventKind::Kick,
-            team: Some(super::team(by.colour)),
-            description: format!(
-                "{} {} {how} at {:.1} m/s",
-                by.colour.label(),
-                by.id.number(),
-                kick.velocity.norm()
-            ),
-            at: Some([milli(kick.from.x()), milli(kick.from.y())]),
-            problem: None,
-            decided: None,
-        });
+        let (name, number, speed) = (by.colour.label(), by.id.number(), kick.velocity.norm());
+        let text = format!("{name} {number} {how} at {speed:.1} m/s");
+        let at = Some([milli(kick.from.x()), milli(kick.from.y())]);
+        let team = Some(super::team(by.colour));
+        into.push(MatchEvent { at, ..MatchEvent::new(t, MatchEventKind::Kick, team, text) });
     }
 }
 

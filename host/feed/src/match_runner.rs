@@ -147,9 +147,9 @@ impl<'f> MatchRunner<'f> {
     pub fn restart(&mut self, seed: u64, observer: &mut dyn MatchObserver) {
         self.config.seed = seed;
         if let Err(failure) = self.library.read_again() {
-            let description = format!("the cases stay as they were, their library is refused: {failure}");
-            observer.note(&printable(&description));
-            self.page.refuse(description);
+            let reason = format!("the cases stay as they were, their library is refused: {failure}");
+            observer.note(&printable(&reason));
+            self.page.refuse(reason);
         }
         if let Some(library_handle) = self.library.now() {
             self.config.names = CaseNames::new(library_handle.names());
@@ -181,11 +181,11 @@ impl<'f> MatchRunner<'f> {
         while game.now().0 / TICK_US < ticks && !game.is_over() && !stopped.load(Ordering::Relaxed) {
             while let Some(request) = self.page.next_request() {
                 let mut watchers = Watchers(vec![&mut feed, observer.watcher()]);
-                if let Some(told) = tell_host(&request, &mut game, &mut tests, &mut watchers) {
+                if let Some(done) = change_host(&request, &mut game, &mut tests, &mut watchers) {
                     feed.parameters.hasten();
-                    match told {
-                        Ok(description) => self.page.push(MatchEvent::fault(game.time(), description)),
-                        Err(description) => self.page.refuse(description),
+                    match done {
+                        Ok(done) => self.page.push(MatchEvent::fault(game.time(), done)),
+                        Err(reason) => self.page.refuse(reason),
                     }
                     continue;
                 }
@@ -294,7 +294,7 @@ impl<'f> MatchRunner<'f> {
             UserRequest::Ball { at } => game.move_ball(Point::new(at[0], at[1]), controls.paused),
             UserRequest::Robot { team, id, at } => match playing(*team, *id) {
                 Ok(who) => game.move_robot(who, Point::new(at[0], at[1]), controls.paused),
-                Err(description) => refused = Some(description),
+                Err(reason) => refused = Some(reason),
             },
             UserRequest::Power { team, id, on } => match playing(*team, *id) {
                 Ok(who) => {
@@ -306,7 +306,7 @@ impl<'f> MatchRunner<'f> {
                         refused = Some(format!("{name} is {} already", if *on { "on" } else { "off" }));
                     }
                 }
-                Err(description) => refused = Some(description),
+                Err(reason) => refused = Some(reason),
             },
             UserRequest::Loss { share } => {
                 game.lose(*share);
@@ -320,8 +320,8 @@ impl<'f> MatchRunner<'f> {
                         game.restore(snapshot);
                     }
                     SnapshotRequest::Return(_) => refused = Some("the game cannot start now".to_owned()),
-                    SnapshotRequest::Kept(description) => noted = Some(description),
-                    SnapshotRequest::Refused(description) => refused = Some(description),
+                    SnapshotRequest::Kept(done) => noted = Some(done),
+                    SnapshotRequest::Refused(reason) => refused = Some(reason),
                     SnapshotRequest::Other => {}
                 }
             }
@@ -341,11 +341,11 @@ impl<'f> MatchRunner<'f> {
                 }
             }
         }
-        if let Some(description) = noted {
-            self.page.push(MatchEvent::fault(t, description));
+        if let Some(done) = noted {
+            self.page.push(MatchEvent::fault(t, done));
         }
-        if let Some(description) = refused {
-            self.page.refuse(description);
+        if let Some(reason) = refused {
+            self.page.refuse(reason);
         }
         Ok(())
     }
@@ -353,7 +353,7 @@ impl<'f> MatchRunner<'f> {
 
 /// Passes on what a host itself takes, which is recorded; what was done or why not, none: it is for the
 /// match.
-fn tell_host(
+fn change_host(
     request: &UserRequest,
     game: &mut Game<'_>,
     tests: &mut KickTests,
@@ -412,7 +412,7 @@ impl UserControls {
     }
 }
 
-/// Whoever has the match played: watches it, and is told what the page's viewers do to it.
+/// The caller of a match: watches it, and learns what the page's viewers do to it.
 pub trait MatchObserver {
     /// The watcher of the running match.
     fn watcher(&mut self) -> &mut dyn Watcher;

@@ -13,7 +13,7 @@ use rules::{Colour, RuleRole};
 use super::description;
 use super::layers::Played;
 use super::names::Names;
-use super::overlay_builder::Aim;
+use super::overlay_input::Aim;
 
 /// Since when robots are in their states: reuse, and what they are ordered.
 #[derive(Debug, Default)]
@@ -101,13 +101,13 @@ pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant, link: LinkWindow)
     let condition = quality.condition();
     let ms = |us: u64| milli(us as f32 * 1e-3);
     let mut faults = Vec::new();
-    for (bit, description) in [
+    for (bit, fault) in [
         (Condition::TIPPED, "tipped over"),
         (Condition::BATTERY_LOW, "battery low"),
         (Condition::LINK_LOST, "link lost"),
     ] {
         if condition.has(bit) {
-            faults.push(description.to_owned());
+            faults.push(fault.to_owned());
         }
     }
     if !quality.is_present(now) {

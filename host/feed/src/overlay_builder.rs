@@ -4,36 +4,11 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use host::referee::Game;
-use host::world::World;
 use page::{DeferredScene, Scene};
-use protocol::Who;
-use rules::{Colour, FieldSpec, League, RuleRole};
 
+use super::overlay_input::{Aim, OverlayInput};
 use super::paths::Paths;
 use super::tactics::Tactics;
-
-/// A robot and the position it is ordered to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Aim {
-    pub(super) who: Who,
-    pub(super) to: [f32; 2],
-    pub(super) rule_role: RuleRole,
-}
-
-/// Inputs of the overlays of a moment.
-#[derive(Clone, Debug)]
-pub(super) struct OverlayInput {
-    /// Seconds since the start.
-    pub(super) t: f64,
-    pub(super) world: World,
-    pub(super) game: Game,
-    pub(super) field: FieldSpec,
-    pub(super) league: League,
-    /// The one team whose host is ours; `None` where both are, or neither.
-    pub(super) us: Option<Colour>,
-    pub(super) aims: Vec<Aim>,
-}
 
 /// Paints one moment after the other; state between moments is shared by its sketches.
 #[derive(Clone, Debug, Default)]

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, VecDeque};
 use page::{Raw, milli};
 use rules::Colour;
 use ssl::Message;
-use ssl::vision::{DetectionFrame, DetectionRobot, WrapperPacket};
+use ssl::vision::{DetectionFrame, WrapperPacket};
 
 /// Number of newest packets that are kept: they hold a frame of each camera, of which a field has at most
 /// eight.
@@ -45,15 +45,15 @@ impl Images {
         let mut raw = Raw::default();
         for frame in cameras.values().filter(|frame| newest - frame.t_capture < OLD_S) {
             raw.balls.extend(frame.balls.iter().map(|ball| [metres(ball.x), metres(ball.y)]));
-            let mut add = |colour, robots: &[DetectionRobot]| {
+            for (colour, robots) in
+                [(Colour::Yellow, &frame.robots_yellow), (Colour::Blue, &frame.robots_blue)]
+            {
                 raw.robots.extend(robots.iter().map(|robot| {
                     let id = robot.robot_id.and_then(|id| u8::try_from(id).ok()).unwrap_or(u8::MAX);
                     let heading = milli(robot.orientation.unwrap_or_default());
                     (super::team(colour), id, metres(robot.x), metres(robot.y), heading)
                 }));
-            };
-            add(Colour::Yellow, &frame.robots_yellow);
-            add(Colour::Blue, &frame.robots_blue);
+            }
         }
         raw
     }
@@ -65,6 +65,8 @@ fn metres(mm: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use ssl::vision::DetectionRobot;
+
     use super::*;
 
     fn image(camera: u32, t: f64, x: f32) -> Vec<u8> {

@@ -1,5 +1,5 @@
-//! `referee_event`: events in the packets of the referee. Commands, stages, goals, game events, cards, and what
-//! else changed: names, robots allowed, places for the ball; each once.
+//! `referee_event`: events in the packets of the referee. Commands, stages, goals, game events, cards, and
+//! what else changed: names, robots allowed, places for the ball; each once.
 
 use std::collections::BTreeSet;
 

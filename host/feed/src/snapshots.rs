@@ -54,7 +54,7 @@ impl Snapshots {
             Ok(snapshot) => {
                 let described = format!("snapshot {} is kept: {:.2} s", self.kept.len(), snapshot.t);
                 self.kept.push(snapshot);
-                self.tell(page);
+                self.publish(page);
                 SnapshotRequest::Kept(described)
             }
             Err(refused) => SnapshotRequest::Refused(excerpt(&refused.to_string(), WHY_LEN)),
@@ -62,11 +62,11 @@ impl Snapshots {
     }
 
     /// The moments for the page, each as a file of it is.
-    pub fn tell(&self, page: &Page) {
+    pub fn publish(&self, page: &Page) {
         // Words and finite numbers: JSON can represent all of it.
         page.set_snapshots(serde_json::to_string(&self.kept).unwrap_or_default());
     }
 }
 
-/// Longest reason that is told, characters: a file that is none may be quoted in it.
+/// Longest reason that is reported, characters: a file that is no snapshot may be quoted in it.
 const WHY_LEN: usize = 200;

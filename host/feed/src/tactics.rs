@@ -2,7 +2,7 @@
 //! strategy's own functions: maps of P(receive) and of P(receive) · P(goal) for the team in possession,
 //! threats and open angles for the other, and what the one believes of the other ([`super::beliefs`]).
 //!
-//! Computed from a snapshot, on the page's thread ([`super::overlay_builder`]); maps five times a second.
+//! Computed from a snapshot, on the page's thread (`overlay_builder`); maps five times a second.
 //! Field frame, m.
 
 use geometry::{Attack, Point};
@@ -17,7 +17,7 @@ use protocol::RobotId;
 use rules::{Colour, Phase};
 
 use super::beliefs::Beliefs;
-use super::overlay_builder::OverlayInput;
+use super::overlay_input::OverlayInput;
 
 /// Period of the maps, s.
 const EVERY_S: f64 = 0.2;
@@ -179,31 +179,42 @@ fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
             rated.push(Rated { place, receive, value });
         }
     }
-    let map = |note: &str, of: fn(&Rated) -> f32| {
-        let best = rated.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
-        let Some((best, most)) =
-            best.map(|best| (best.place, of(best))).filter(|(_, most)| *most > WORTH_MIN)
-        else {
+    let grid = Grid { half_x, half_y, columns };
+    [
+        grid.map(&rated, "a pass to here arrives", |rated| rated.receive),
+        grid.map(&rated, "a pass to here and a shot from here end in a goal", |rated| rated.value),
+    ]
+}
+
+/// Half a field, m, and the number of cells along it.
+struct Grid {
+    half_x: f32,
+    half_y: f32,
+    columns: u32,
+}
+
+impl Grid {
+    /// The map of one value of the places, with the best of them labelled; nothing where none is worth it.
+    fn map(&self, rated: &[Rated], note: &str, of: fn(&Rated) -> f32) -> Vec<Shape> {
+        let Some(best) = rated.iter().max_by(|a, b| of(a).total_cmp(&of(b))) else { return Vec::new() };
+        let most = of(best);
+        if most <= WORTH_MIN {
             return Vec::new();
-        };
+        }
         let cell = |value: f32| if value < most * DRAWN_SHARE_MIN { 0 } else { (value / most * 255.0) as u8 };
         let heat = Heat {
-            low: [milli(-half_x), milli(-half_y)],
-            high: [milli(half_x), milli(half_y)],
-            columns,
+            low: [milli(-self.half_x), milli(-self.half_y)],
+            high: [milli(self.half_x), milli(self.half_y)],
+            columns: self.columns,
             cells: rated.iter().map(|place| cell(of(place))).collect(),
             most,
             note: note.to_owned(),
         };
         let text =
             if most < 0.1 { format!("{:.1} %", most * 100.0) } else { format!("{:.0} %", most * 100.0) };
-        let at = [milli(best.x()), milli(best.y())];
+        let at = [milli(best.place.x()), milli(best.place.y())];
         vec![Shape::Heat(heat), Shape::Text { at, text, tone: Tone::Plain }]
-    };
-    [
-        map("a pass to here arrives", |rated| rated.receive),
-        map("a pass to here and a shot from here end in a goal", |rated| rated.value),
-    ]
+    }
 }
 
 /// The open angle of the nearest threat, then of every robot that could receive the ball next.

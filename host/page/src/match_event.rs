@@ -50,15 +50,12 @@ pub struct DecisionNote {
 impl MatchEvent {
     /// A fault at `t` seconds since the start, of no team and no place.
     pub fn fault(t: f64, description: String) -> Self {
-        Self {
-            t,
-            kind: MatchEventKind::Fault,
-            team: None,
-            description,
-            at: None,
-            problem: None,
-            decided: None,
-        }
+        Self::new(t, MatchEventKind::Fault, None, description)
+    }
+
+    /// An event without a place or a problem; `t` in s since the start.
+    pub fn new(t: f64, kind: MatchEventKind, team: Option<PageTeam>, description: String) -> Self {
+        Self { t, kind, team, description, at: None, problem: None, decided: None }
     }
 }
 

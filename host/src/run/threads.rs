@@ -209,7 +209,8 @@ impl Pace {
     }
 }
 
-/// A message for a line that dropped more than one in [`SUPERSEDED_ONE_IN`] of its snapshots between two counts.
+/// A message for a line that dropped more than one in [`SUPERSEDED_ONE_IN`] of its snapshots between two
+/// counts.
 fn too_slow(line: &LineRate, before: OutCounts, counts: OutCounts, passed: Duration) -> Option<String> {
     let lost = counts.superseded - before.superseded;
     let offered = counts.snapshots - before.snapshots;

@@ -127,6 +127,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_phase_is_written_in_words_with_its_team() {
+        use std::string::ToString as _;
+
+        assert_eq!(Phase::FreeKick(Colour::Blue).to_string(), "free kick, blue");
+        assert_eq!(Phase::<Colour>::Halt.to_string(), "halt");
+    }
+
+    #[test]
     fn a_team_sees_its_own_free_kick_as_ours() {
         let phase = Phase::FreeKick(Colour::Blue);
         assert_eq!(phase.seen_by(Colour::Blue), Phase::FreeKick(Side::Ours));

@@ -208,7 +208,7 @@ fn a_circle_of_folders_is_found_though_no_file_is_in_one() {
 }
 
 /// Circles that are left, by crate: files in the order of their names. Only to be shortened.
-const KNOWN: [(&str, &[&str]); 9] = [
+const KNOWN: [(&str, &[&str]); 8] = [
     ("casebase", &["case", "index", "path", "plan_simulation", "stored", "table"]),
     ("brain", &["belief", "body", "skills"]),
     ("brain", &["estimate", "execution"]),
@@ -226,7 +226,6 @@ const KNOWN: [(&str, &[&str]); 9] = [
         ],
     ),
     ("onetwo", &["evaluate::merge", "evaluate::report", "evaluate::work"]),
-    ("onetwo", &["live::overlay_builder", "live::tactics"]),
     ("match-tests", &["oracle::library", "oracle::walk"]),
 ];
 

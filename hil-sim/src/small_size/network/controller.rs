@@ -1,5 +1,5 @@
-//! `controller`: a match that an external game controller runs: its packets are received, an automatic referee
-//! reports to it, and the human's tasks are done.
+//! `controller`: a match that an external game controller runs: its packets are received, an automatic
+//! referee reports to it, and the human's tasks are done.
 
 use std::net::SocketAddr;
 use std::time::Duration;

@@ -18,14 +18,14 @@ const DATAGRAMS_MAX: usize = 64;
 /// Sockets of the simulation protocol.
 #[derive(Debug)]
 pub(super) struct Ports {
-    ports: Vec<Socket>,
+    endpoints: Vec<Endpoint>,
     tried: Instant,
     commanders: Commanders,
     began: Instant,
 }
 
 #[derive(Debug)]
-struct Socket {
+struct Endpoint {
     port: server::Port,
     address: SocketAddr,
     socket: Option<Port>,
@@ -37,11 +37,11 @@ impl Ports {
     pub(super) fn open(listen: IpAddr, base: u16, legacy: Option<u16>, lines: &mut Vec<String>) -> Self {
         let entry = |offset: u16, port| {
             let number = if base == 0 { 0 } else { base + offset };
-            Socket { port, address: SocketAddr::new(listen, number), socket: None, troubled: false }
+            Endpoint { port, address: SocketAddr::new(listen, number), socket: None, troubled: false }
         };
         let teams = [Colour::Blue, Colour::Yellow].map(server::Port::Team);
         let mut ports = Self {
-            ports: vec![entry(0, server::Port::Simulator), entry(1, teams[0]), entry(2, teams[1])],
+            endpoints: vec![entry(0, server::Port::Simulator), entry(1, teams[0]), entry(2, teams[1])],
             tried: Instant::now(),
             commanders: Commanders::default(),
             began: Instant::now(),
@@ -49,7 +49,7 @@ impl Ports {
         if base == 0 {
             ports.take_any();
         }
-        ports.ports.extend(legacy.map(|number| Socket {
+        ports.endpoints.extend(legacy.map(|number| Endpoint {
             port: server::Port::Legacy,
             address: SocketAddr::new(listen, number),
             socket: None,
@@ -61,7 +61,7 @@ impl Ports {
 
     /// Three free ports in a row, so that clients need only one number.
     fn take_any(&mut self) {
-        let listen = self.ports[0].address.ip();
+        let listen = self.endpoints[0].address.ip();
         for _ in 0..100 {
             let Ok(first) = Port::bind(SocketAddr::new(listen, 0)) else { return };
             let base = first.address().port();
@@ -69,7 +69,7 @@ impl Ports {
                 base.checked_add(offset).and_then(|port| Port::bind(SocketAddr::new(listen, port)).ok())
             };
             if let (Some(second), Some(third)) = (next(1), next(2)) {
-                for (entry, socket) in self.ports.iter_mut().zip([first, second, third]) {
+                for (entry, socket) in self.endpoints.iter_mut().zip([first, second, third]) {
                     entry.address = socket.address();
                     entry.socket = Some(socket);
                 }
@@ -79,7 +79,7 @@ impl Ports {
     }
 
     fn take(&mut self, lines: &mut Vec<String>) {
-        for entry in self.ports.iter_mut().filter(|entry| entry.socket.is_none()) {
+        for entry in self.endpoints.iter_mut().filter(|entry| entry.socket.is_none()) {
             match Port::bind(entry.address) {
                 Ok(socket) => {
                     entry.address = socket.address();
@@ -99,7 +99,7 @@ impl Ports {
 
     /// Passes received datagrams to the simulator.
     pub(super) fn listen(&mut self, server: &mut Server, lines: &mut Vec<String>) {
-        for entry in &mut self.ports {
+        for entry in &mut self.endpoints {
             let Some(socket) = &mut entry.socket else { continue };
             for _ in 0..DATAGRAMS_MAX {
                 match socket.receive(Duration::ZERO) {
@@ -128,7 +128,7 @@ impl Ports {
     /// Answers a request. An answer that cannot be sent is lost, as any datagram may be.
     pub(super) fn answer(&self, from: server::Port, to: SocketAddr, bytes: &[u8]) {
         if let Some(socket) =
-            self.ports.iter().find(|entry| entry.port == from).and_then(|entry| entry.socket.as_ref())
+            self.endpoints.iter().find(|entry| entry.port == from).and_then(|entry| entry.socket.as_ref())
         {
             let _ = socket.send(to, bytes);
         }
@@ -142,14 +142,14 @@ impl Ports {
 
     /// The addresses that clients send to, for the operator.
     pub(super) fn addresses(&self) -> String {
-        let mut ports = self.ports.iter();
-        let first = ports.next().map(|entry| entry.address.to_string());
-        let others = ports.map(|entry| format!("{} {}", entry.name(), entry.address.port()));
+        let mut endpoints = self.endpoints.iter();
+        let first = endpoints.next().map(|entry| entry.address.to_string());
+        let others = endpoints.map(|entry| format!("{} {}", entry.name(), entry.address.port()));
         first.into_iter().chain(others).collect::<Vec<_>>().join(", ")
     }
 }
 
-impl Socket {
+impl Endpoint {
     const fn name(&self) -> &'static str {
         match self.port {
             server::Port::Simulator => "control",
@@ -170,7 +170,7 @@ mod tests {
         let mut lines = Vec::new();
         let first = Ports::open(home, 0, None, &mut lines);
         assert!(lines.is_empty(), "{lines:?}");
-        let base = first.ports[0].address.port();
+        let base = first.endpoints[0].address.port();
         let second = Ports::open(home, base, None, &mut lines);
         assert_eq!(lines.len(), 3, "{lines:?}");
         assert!(lines[0].contains("is taken") && lines[0].contains(&base.to_string()), "{}", lines[0]);

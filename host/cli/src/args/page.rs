@@ -32,10 +32,8 @@ const LISTEN: &str = "--listen";
 /// Why there is no page; with the flag of its address.
 #[derive(Debug, Error)]
 pub(crate) enum NoPage {
-    /// The page cannot be served.
     #[error("{0} ({1})")]
     Page(PageError, &'static str),
-    /// There are no random numbers for the page's token.
     #[error("{0} ({1})")]
     Token(NoToken, &'static str),
 }
@@ -76,8 +74,8 @@ impl PageArgs {
 }
 
 /// Keeps the page open after everything was played, until the operator ends the program.
-pub(crate) fn stay(page: Page, description: &str) {
-    note!("{description}; the page stays until Ctrl-C");
+pub(crate) fn stay(page: Page, end: &str) {
+    note!("{end}; the page stays until Ctrl-C");
     while !stopped_by_hand().load(Ordering::Relaxed) {
         thread::sleep(Duration::from_millis(50));
     }

@@ -22,7 +22,6 @@ pub(crate) fn league(name: &str) -> Result<League, String> {
         .ok_or_else(|| "expected ssl-2013, division-b or division-a".to_owned())
 }
 
-/// A team's colour.
 pub(crate) fn colour(label: &str) -> Result<Colour, String> {
     [Colour::Blue, Colour::Yellow]
         .into_iter()
@@ -77,7 +76,6 @@ pub(crate) fn field_speed(text: &str) -> Result<f32, String> {
         .ok_or_else(|| format!("expected 0 (stands still) to {most}"))
 }
 
-/// A number of cameras.
 pub(crate) fn cameras(text: &str) -> Result<u32, String> {
     text.parse().ok().filter(|n| [1, 2, 4].contains(n)).ok_or_else(|| "expected 1, 2 or 4".to_owned())
 }
@@ -111,7 +109,6 @@ pub(crate) fn host_address(text: &str) -> Result<SocketAddr, String> {
     found.ok_or_else(|| "expected HOST:PORT that the network can resolve".to_owned())
 }
 
-/// A robot's number.
 pub(crate) fn robot_id(text: &str) -> Result<RobotId, String> {
     let number: u8 = text.parse().map_err(|_| "expected a number from 0 to 15".to_owned())?;
     RobotId::try_from(number).map_err(|error| error.to_string())

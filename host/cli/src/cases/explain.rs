@@ -101,9 +101,9 @@ fn difference<'a>(
     let chosen_rows = pair.map(|id| {
         let verdict = verdicts.iter().find(|(other, _)| *other == id).map(|(_, verdict)| verdict);
         let rank = ranking.iter().position(|found| found.case == id).map_or(0, |before| before + 1);
-        let description =
+        let reason =
             verdict.zip(base.case(id)).map(|(verdict, case)| reason(verdict, rank, &case, problem, chosen));
-        (id, verdict, description.unwrap_or_else(|| "it defends the other goal".to_owned()))
+        (id, verdict, reason.unwrap_or_else(|| "it defends the other goal".to_owned()))
     });
     Difference::new(library_handle, chosen_rows, &chosen.settings)
 }

@@ -120,39 +120,19 @@ fn write(file: &Path, force: bool, text: &str) -> Result<(), DraftError> {
         .map_err(|error| DraftError::Write { file: file.to_owned(), error })
 }
 
-/// Why no case is drafted.
 #[derive(Debug, Error)]
 enum DraftError {
-    /// No robot to play the ball.
     #[error("the problem has no teammate, and a case needs one; add who plays the ball to \"teammates\"")]
     NoTeammate,
-    /// The league's rules cannot be read.
     #[error(
         "cannot read {}: {error}; --library takes one league's directory, the one that holds league.toml",
         printable_path(file)
     )]
-    Rules {
-        /// `league.toml` of the named directory.
-        file: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
-    /// The problem cannot be had.
+    Rules { file: PathBuf, error: io::Error },
     #[error("{from}: {error}")]
-    Problem {
-        /// The file's name, or stdin.
-        from: String,
-        /// Why.
-        error: ProblemError,
-    },
-    /// The draft cannot be written.
+    Problem { from: String, error: ProblemError },
     #[error("cannot write {}: {error}; {}", printable_path(file), remedy(error))]
-    Write {
-        /// Destination.
-        file: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
+    Write { file: PathBuf, error: io::Error },
 }
 
 /// Remedy for a file that could not be written.

@@ -269,13 +269,13 @@ fn hints(case: &CaseCounters, counters: &Counters) -> Vec<String> {
     hints
 }
 
-fn counted(description: &[String], counts: &[u64]) -> String {
-    let pairs = description.iter().zip(counts).filter(|(_, count)| **count > 0);
+fn counted(labels: &[String], counts: &[u64]) -> String {
+    let pairs = labels.iter().zip(counts).filter(|(_, count)| **count > 0);
     pairs.map(|(label, count)| format!("{label} {count}")).collect::<Vec<_>>().join(", ")
 }
 
-fn object(description: &[&str], counts: &[u64]) -> Value {
-    description
+fn object(labels: &[&str], counts: &[u64]) -> Value {
+    labels
         .iter()
         .zip(counts)
         .map(|(label, count)| ((*label).to_owned(), json!(count)))

@@ -7,16 +7,12 @@ use foreign::printable_path;
 use host::config::ConfigError;
 use thiserror::Error;
 
-/// Why the verb ends.
 #[derive(Debug, Error)]
 pub(super) enum ControlError {
-    /// A file of settings cannot be read.
     #[error("{}: {error}", printable_path(.0), error = .1)]
     ConfigUnreadable(PathBuf, io::Error),
-    /// A file of settings is faulty.
     #[error("{}: {error}", printable_path(.0), error = .1)]
     ConfigFile(PathBuf, ConfigError),
-    /// The new settings file cannot be written.
     #[error("{}: {}", printable_path(.0), unwritten(.1))]
     Init(PathBuf, io::Error),
 }

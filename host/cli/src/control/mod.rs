@@ -149,7 +149,6 @@ pub(crate) struct CasesArgs {
     settings: SettingsArgs,
 }
 
-/// `onetwo control`.
 pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     ensure_built_for(args.robot.as_deref())?;
     let config = configure(args)?;

@@ -20,7 +20,6 @@ use crate::output::{note, printable_path, program_log};
 /// What the operator's page is opened with.
 pub(super) struct PageSettings<'a> {
     pub(super) args: &'a PageArgs,
-    /// The page may change parameters.
     pub(super) live_parameters: bool,
     pub(super) library: Option<LibraryHandle>,
     pub(super) retrieval: casebase::RetrievalSettings,
@@ -43,6 +42,12 @@ impl<'a> ControlOperator<'a> {
         page_settings: Option<PageSettings<'a>>,
     ) -> Self {
         Self { config, file, page_settings, terminal: None, dashboard: None }
+    }
+
+    fn on_page(&mut self, act: impl FnOnce(&mut Dashboard)) {
+        if let Some(dashboard) = &mut self.dashboard {
+            act(dashboard);
+        }
     }
 }
 
@@ -73,33 +78,23 @@ impl Operator for ControlOperator<'_> {
     }
 
     fn vision(&mut self, bytes: &[u8]) {
-        if let Some(dashboard) = &mut self.dashboard {
-            dashboard.composer.vision(bytes);
-        }
+        self.on_page(|dashboard| dashboard.composer.vision(bytes));
     }
 
     fn referee(&mut self, now: protocol::Instant, bytes: &[u8]) {
-        if let Some(dashboard) = &mut self.dashboard {
-            dashboard.composer.referee(bytes, now.0 as f64 * 1e-6, false);
-        }
+        self.on_page(|dashboard| dashboard.composer.referee(bytes, now.0 as f64 * 1e-6, false));
     }
 
     fn took(&mut self, time: Duration) {
-        if let Some(dashboard) = &mut self.dashboard {
-            dashboard.took = (dashboard.took * 15 + time) / 16;
-        }
+        self.on_page(|dashboard| dashboard.took = (dashboard.took * 15 + time) / 16);
     }
 
     fn fault(&mut self, now: protocol::Instant, fault: String) {
-        if let Some(dashboard) = &mut self.dashboard {
-            dashboard.page.push(MatchEvent::fault(now.0 as f64 * 1e-6, fault));
-        }
+        self.on_page(|dashboard| dashboard.page.push(MatchEvent::fault(now.0 as f64 * 1e-6, fault)));
     }
 
     fn changed(&mut self) {
-        if let Some(dashboard) = &mut self.dashboard {
-            dashboard.parameters.hasten();
-        }
+        self.on_page(|dashboard| dashboard.parameters.hasten());
     }
 
     fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) {
@@ -113,30 +108,18 @@ impl Operator for ControlOperator<'_> {
 
     fn next_request(&mut self) -> Option<Request> {
         let page = &self.dashboard.as_ref()?.page;
-        loop {
-            return Some(match page.next_request()? {
-                UserRequest::Halt {} => Request::Halt,
-                UserRequest::Parameter { key, robot, value, .. } => {
-                    match change_of(&key, robot, value.as_ref()) {
-                        Ok(change) => Request::Change(change),
-                        Err(reason) => {
-                            page.refuse(reason);
-                            continue;
-                        }
-                    }
-                }
-                UserRequest::Kicks { robot, kicks, .. } => Request::Test(test_of(robot, kicks)),
-                UserRequest::Save {} => Request::Save,
-                // Requests for a simulation are refused when they are read.
-                _ => continue,
-            });
+        while let Some(request) = page.next_request() {
+            match request_of(request) {
+                Some(Ok(request)) => return Some(request),
+                Some(Err(reason)) => page.refuse(reason),
+                None => {}
+            }
         }
+        None
     }
 
     fn refuse(&mut self, reason: String) {
-        if let Some(dashboard) = &self.dashboard {
-            dashboard.page.refuse(reason);
-        }
+        self.on_page(|dashboard| dashboard.page.refuse(reason));
     }
 
     fn ended(&mut self) {
@@ -144,6 +127,20 @@ impl Operator for ControlOperator<'_> {
             terminal.close();
         }
     }
+}
+
+/// A viewer's request to the host, or why it is none; nothing where it is for a simulation, which was refused
+/// when it was read.
+fn request_of(request: UserRequest) -> Option<Result<Request, String>> {
+    Some(match request {
+        UserRequest::Halt {} => Ok(Request::Halt),
+        UserRequest::Parameter { key, robot, value, .. } => {
+            change_of(&key, robot, value.as_ref()).map(Request::Change)
+        }
+        UserRequest::Kicks { robot, kicks, .. } => Ok(Request::Test(test_of(robot, kicks))),
+        UserRequest::Save {} => Ok(Request::Save),
+        _ => return None,
+    })
 }
 
 /// The page beside a real field, and what fills it.

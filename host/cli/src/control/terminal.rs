@@ -19,7 +19,6 @@ enum Print {
     Status(String),
 }
 
-/// The operator's terminal.
 pub(super) struct Terminal {
     prints: SyncSender<Print>,
     thread: JoinHandle<()>,
@@ -32,26 +31,24 @@ impl Terminal {
         Self { prints, thread: thread::spawn(move || print(&waiting)), dropped: 0 }
     }
 
-    /// Prints a permanent line.
-    pub(super) fn line(&mut self, description: String) {
-        let description = match self.dropped {
-            0 => description,
+    pub(super) fn line(&mut self, line: String) {
+        let line = match self.dropped {
+            0 => line,
             dropped => {
-                format!("{description}\n{dropped} lines before this one were dropped: the terminal took none")
+                format!("{line}\n{dropped} lines before this one were dropped: the terminal took none")
             }
         };
-        match self.prints.try_send(Print::Line(description)) {
+        match self.prints.try_send(Print::Line(line)) {
             Ok(()) => self.dropped = 0,
             Err(_) => self.dropped += 1,
         }
     }
 
     /// Prints the line that is replaced by the next of its kind.
-    pub(super) fn status(&self, description: String) {
-        let _ = self.prints.try_send(Print::Status(description));
+    pub(super) fn status(&self, line: String) {
+        let _ = self.prints.try_send(Print::Status(line));
     }
 
-    /// Prints the waiting lines.
     pub(super) fn close(self) {
         drop(self.prints);
         let until = Instant::now() + AT_END;
@@ -65,8 +62,8 @@ fn print(waiting: &Receiver<Print>) {
     let bar = Progress::open();
     for print in waiting {
         match print {
-            Print::Line(description) => bar.aside(|| note!("{description}")),
-            Print::Status(description) => bar.set_text(description),
+            Print::Line(line) => bar.aside(|| note!("{line}")),
+            Print::Status(line) => bar.set_text(line),
         }
     }
 }

@@ -61,10 +61,10 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
             }
         },
     };
-    for description in downloads(args, &image) {
-        let line = format!("{PROGRAM} {}", description.join(" "));
+    for arguments in downloads(args, &image) {
+        let line = format!("{PROGRAM} {}", arguments.join(" "));
         note!("onetwo: {line}");
-        match Command::new(PROGRAM).args(&description).status() {
+        match Command::new(PROGRAM).args(&arguments).status() {
             Ok(status) if status.success() => {}
             Ok(status) => {
                 return Err(FirmwareError::Flasher(line, status).into());
@@ -116,7 +116,7 @@ mod tests {
             probe: None,
         };
         let lines: Vec<_> =
-            downloads(&args, Path::new("image")).iter().map(|description| description.join(" ")).collect();
+            downloads(&args, Path::new("image")).iter().map(|arguments| arguments.join(" ")).collect();
         assert_eq!(
             lines,
             [

@@ -15,6 +15,7 @@ mod report;
 mod run;
 mod size;
 
+use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -76,7 +77,6 @@ impl ImagesArgs {
     }
 }
 
-/// Runs the verb.
 pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
     match verb {
         FirmwareVerb::Build(args) => {
@@ -103,8 +103,8 @@ pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
 }
 
 /// A failure that concerns a file.
-fn at<E>(path: &Path, what: impl Fn(PathBuf, E) -> FirmwareError) -> impl Fn(E) -> Failure {
-    move |error| what(path.to_owned(), error).into()
+fn at<E: Error + Send + Sync + 'static>(path: &Path) -> impl Fn(E) -> Failure {
+    move |error| FirmwareError::File(path.to_owned(), Box::new(error)).into()
 }
 
 fn build(program: Program) -> Result<PathBuf, Failure> {
@@ -115,7 +115,7 @@ fn build(program: Program) -> Result<PathBuf, Failure> {
 const IMAGE_LEN_MAX: u64 = 1 << 28;
 
 fn sizes_of(path: &Path) -> Result<Sizes, Failure> {
-    let bytes = foreign::read(path, IMAGE_LEN_MAX).map_err(at(path, FirmwareError::File))?;
-    let image = Image::parse(&bytes).map_err(at(path, FirmwareError::Image))?;
+    let bytes = foreign::read(path, IMAGE_LEN_MAX).map_err(at(path))?;
+    let image = Image::parse(&bytes).map_err(at(path))?;
     Ok(Sizes::of(&image))
 }

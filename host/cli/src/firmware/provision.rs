@@ -61,7 +61,6 @@ impl LeagueLabel {
     }
 }
 
-/// Writes the page.
 pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
     let robot = RobotId::new(args.robot).ok_or(FirmwareError::NoRobot(args.robot))?;
     let key = host::shell::key::read(&args.key_file)?;
@@ -76,8 +75,8 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
     };
     let bytes: [u8; PAGE_LEN] = page(&who);
     // The page is read back as by the robot: a key of zeros is refused here already.
-    read(&bytes, false).map_err(FirmwareError::Page)?;
-    write_for_owner(&args.out, &bytes).map_err(at(&args.out, FirmwareError::File))?;
+    read(&bytes, false)?;
+    write_for_owner(&args.out, &bytes).map_err(at(&args.out))?;
     print_text(&format!(
         "{}: robot {robot} of team {}; it holds this robot's keys, not the team's\n",
         args.out.display(),

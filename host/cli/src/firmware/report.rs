@@ -10,7 +10,6 @@ use firmware_build::{Program, workspace_root};
 
 use super::at;
 use super::failsafe;
-use super::failure::FirmwareError;
 use super::size::{Known, POOL_LEAST, Share};
 use crate::Failure;
 use crate::output::print_text;
@@ -37,7 +36,7 @@ pub(super) fn run(args: &ReportArgs) -> Result<(), Failure> {
         return print_text(&text);
     }
     let path = workspace_root().join(FILE);
-    fs::write(&path, text).map_err(at(&path, FirmwareError::File))
+    fs::write(&path, text).map_err(at(&path))
 }
 
 fn text(all: &[Known], seconds: f64) -> String {

@@ -58,7 +58,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let qemu = ensure_qemu(Install::ForUser)?;
     let mut command = Command::new(qemu);
     command.args(qemu_arguments(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
-    let status = command.status().map_err(FirmwareError::Emulator)?;
+    let status = command.status()?;
     if status.success() { Ok(()) } else { Err(FirmwareError::Ended(status).into()) }
 }
 
@@ -67,8 +67,8 @@ const PAGE_FILE_LEN_MAX: u64 = 1 << 17;
 
 /// The page as a robot reads it.
 fn check(file: &Path) -> Result<Provision, Failure> {
-    let bytes = foreign::read(file, PAGE_FILE_LEN_MAX).map_err(at(file, FirmwareError::File))?;
-    read(&bytes, false).map_err(at(file, FirmwareError::PageFile))
+    let bytes = foreign::read(file, PAGE_FILE_LEN_MAX).map_err(at(file))?;
+    read(&bytes, false).map_err(at(file))
 }
 
 /// Arguments of QEMU.

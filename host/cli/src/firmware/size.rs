@@ -134,7 +134,6 @@ impl<'a> From<&'a SizePart> for PartJson<'a> {
     }
 }
 
-/// Prints it.
 pub(super) fn run(args: &SizeArgs) -> Result<(), Failure> {
     let seconds = (!args.still).then_some(args.seconds);
     let images: Vec<_> = args.images.programs();

@@ -6,9 +6,7 @@
 
 use std::process::ExitCode;
 
-use feed::recording::{
-    Asked, LogClock, Missing, Moment, RecordedError, RefereeEventFinder, Score, in_file, is_meant,
-};
+use feed::recording::{LogClock, Moment, RecordedError, RefereeEventFinder, Score, in_file, is_meant};
 use host::referee::{Listener, SenderAddress};
 use host::tracking::{Tracker, VisionVerdict};
 use host::{Host, HostSettings, Input};
@@ -48,8 +46,8 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let damage = reader.end().filter(|end| !end.is_whole()).map(ToString::to_string);
     let back_steps = reader.counts().back_steps;
     if args.at.is_some() || args.event.is_some() {
-        let missing = Missing { asked: pass.asked(args), damage };
-        return Err(in_file(&args.file)(RecordedError::NotThere(missing)).into());
+        let missing = RecordedError::NotThere { asked: pass.asked(args), damage };
+        return Err(in_file(&args.file)(missing).into());
     }
     let report = pass.finish(damage, back_steps);
     print_text(&if args.json { json_line(&report)? } else { report.text() })?;
@@ -126,8 +124,8 @@ impl<'a> Pass<'a> {
                 if let Some(kind) = self.report.messages.get_mut(&record.kind.to_string()) {
                     kind.undecodable += 1;
                 }
-                let description = || format!("message {number} at {at_s:.3} s: {error}");
-                self.report.first_undecodable.get_or_insert_with(description);
+                let first = || format!("message {number} at {at_s:.3} s: {error}");
+                self.report.first_undecodable.get_or_insert_with(first);
                 None
             }
         };
@@ -180,15 +178,18 @@ impl<'a> Pass<'a> {
         Moment::new(at.0 as f64 * 1e-6, event, &world, self.listener.game(), &[])
     }
 
-    fn asked(&self, args: &ReplayArgs) -> Asked {
+    fn asked(&self, args: &ReplayArgs) -> String {
         match (&args.event, args.at) {
             (Some(label), _) => {
                 let mut known: Vec<_> = self.report.match_events.iter().map(|h| h.name.clone()).collect();
                 known.sort_unstable();
                 known.dedup();
-                Asked::LogEvent { met: self.met, name: label.clone(), nth: args.nth, known }
+                let known = if known.is_empty() { "no event".to_owned() } else { known.join(", ") };
+                format!("{} `{label}` in it, not {}; it has: {known}", self.met, args.nth)
             }
-            (None, at) => Asked::LogTime(at.unwrap_or_default(), self.seconds()),
+            (None, at) => {
+                format!("it ends after {:.3} s, before {} s", self.seconds(), at.unwrap_or_default())
+            }
         }
     }
 

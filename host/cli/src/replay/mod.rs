@@ -76,7 +76,6 @@ Exit codes: 0 the file is whole, and the hosts of a trace decide as recorded; 1 
 and where it ends on stderr), hosts decide otherwise, or what was asked for is not in it; 2 wrong usage.
 With --compare: 0 the traces are equal, 1 they differ, or one of them is damaged or cannot be compared with the other; 2 wrong usage.";
 
-/// `onetwo replay`.
 pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     if args.watch {
         return show::run(args);

@@ -151,7 +151,6 @@ impl Report {
         };
     }
 
-    /// As text.
     pub(super) fn text(&self) -> String {
         let mut lines = vec![format!("{}: a league log file of {:.1} s", printable(&self.file), self.span_s)];
         for (name, messages) in &self.messages {

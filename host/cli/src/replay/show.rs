@@ -19,7 +19,6 @@ use crate::output::program_log;
 use crate::progress::Progress;
 use crate::stop::stopped_by_hand;
 
-/// Displays the file.
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let (page, shown, end) = if begins_as_trace(&args.file)? { show_trace(args)? } else { show_log(args)? };
     match shown {

@@ -7,8 +7,8 @@ use std::process::ExitCode;
 
 use arena::ledger::CaseTable;
 use feed::recording::{
-    Asked, Decision, Decisions, Missing, Moment, RecordedError, RefereeEvent, RefereeEventFinder, Sheet,
-    TraceFile, hosts_of, in_file, is_meant, record_label,
+    Decision, Decisions, Moment, RecordedError, RefereeEvent, RefereeEventFinder, Sheet, TraceFile, hosts_of,
+    in_file, is_meant, record_label,
 };
 use foreign::{excerpt, printable};
 use hil_sim::small_size::worlds::WorldChoice;
@@ -122,10 +122,10 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         let (_, last) = span.unwrap_or_default();
         let end = last.0 as f64 * 1e-6;
         let asked = match &args.event {
-            None => Asked::TraceTime(args.at.unwrap_or_default(), end),
-            Some(name) => Asked::TraceEvent { met, name: name.clone(), nth: args.nth, end },
+            None => format!("{} s is after its end; it ends at {end:.3} s", args.at.unwrap_or_default()),
+            Some(name) => format!("{met} `{name}` in it, not {}; it ends at {end:.3} s", args.nth),
         };
-        return Err(in_file(file)(RecordedError::NotThere(Missing { asked, damage })).into());
+        return Err(in_file(file)(RecordedError::NotThere { asked, damage }).into());
     }
     if let Some(feed) = recheck.host(first_shown) {
         decisions.finish(feed, &hosts_of(&recheck));

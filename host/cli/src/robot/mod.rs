@@ -43,7 +43,6 @@ pub(crate) struct CheckArgs {
     strict: bool,
 }
 
-/// Runs the verb.
 pub(crate) fn run(verb: &RobotVerb) -> Result<ExitCode, Failure> {
     match verb {
         RobotVerb::Check(args) => check(args)?,

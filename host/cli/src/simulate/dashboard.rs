@@ -120,7 +120,7 @@ impl Dashboard {
                     let league = self.feed.settings().league;
                     match self.snapshots.ask(&request, server.world(), league, &self.page) {
                         SnapshotRequest::Return(snapshot) => snapshot.restore(server.world_mut()),
-                        SnapshotRequest::Refused(description) => self.page.refuse(description),
+                        SnapshotRequest::Refused(reason) => self.page.refuse(reason),
                         SnapshotRequest::Kept(_) | SnapshotRequest::Other => {}
                     }
                 }

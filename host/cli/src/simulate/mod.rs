@@ -5,7 +5,6 @@
 //! page.
 
 mod dashboard;
-mod failure;
 mod spectator;
 
 use std::net::SocketAddr;
@@ -20,12 +19,12 @@ use hil_sim::small_size::server::ServerSettings;
 use hil_sim::small_size::worlds::{WorldChoice, WorldModel};
 use rules::League;
 use ssl::net::addresses;
+use thiserror::Error;
 
 use crate::Failure;
 use crate::args::parsers::{cameras, controller, field_speed, league, referee, seconds};
 use crate::robot_description::ensure_built_for;
 use crate::stop::stopped_by_hand;
-use failure::SimulateError;
 use spectator::FieldOperator;
 
 /// What is simulated, and the addresses to receive from and send to.
@@ -128,7 +127,6 @@ enum ProfileLabel {
     ErForce,
 }
 
-/// `onetwo simulate`.
 pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     if args.referee == RefereeKind::Internal && (args.assistant || args.autoref.is_some()) {
         return Err(SimulateError::InternalReferee.into());
@@ -178,4 +176,15 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     };
     network::run(&network, &mut FieldOperator::new(args, title), stopped_by_hand())?;
     Ok(ExitCode::SUCCESS)
+}
+
+#[derive(Debug, Error)]
+enum SimulateError {
+    #[error(
+        "--assistant and --autoref serve a game controller elsewhere, and the internal referee needs neither; add \
+         --referee none, or the ADDRESS:PORT of its packets"
+    )]
+    InternalReferee,
+    #[error("{} is not played on wheels", .0.name())]
+    NotOnWheels(League),
 }

@@ -1,5 +1,5 @@
-//! `spectator`: what the operator of `onetwo simulate` sees of the field, on the terminal and on the page, and
-//! our own tracker beside it.
+//! `spectator`: what the operator of `onetwo simulate` sees of the field, on the terminal and on the page,
+//! and our own tracker beside it.
 
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -65,16 +65,12 @@ impl Spectator for FieldOperator<'_> {
     }
 
     fn vision(&mut self, bytes: &[u8], running: Duration) -> Option<String> {
-        if let Some(dashboard) = &mut self.dashboard {
-            dashboard.vision(bytes, running);
-        }
+        self.dashboard.iter_mut().for_each(|dashboard| dashboard.vision(bytes, running));
         self.tracked.as_mut()?.receive(bytes, running)
     }
 
     fn referee(&mut self, bytes: &[u8], running: Duration) {
-        if let Some(dashboard) = &mut self.dashboard {
-            dashboard.referee(bytes, running);
-        }
+        self.dashboard.iter_mut().for_each(|dashboard| dashboard.referee(bytes, running));
     }
 
     fn look(
@@ -89,9 +85,7 @@ impl Spectator for FieldOperator<'_> {
 
     fn restarted(&mut self, seed: u64) {
         self.tracked = self.args.tracker.map(|to| Tracked::new(to, self.args.interface.as_deref()));
-        if let Some(dashboard) = &mut self.dashboard {
-            dashboard.restart(self.league, seed);
-        }
+        self.dashboard.iter_mut().for_each(|dashboard| dashboard.restart(self.league, seed));
     }
 
     fn ended(&mut self) {

@@ -36,7 +36,7 @@ impl<'a> Beside<'a> {
     }
 
     /// The first difference in words, for the terminal.
-    pub fn description(&self) -> String {
+    pub fn first_difference(&self) -> String {
         let found = self.first.as_ref();
         found.map_or_else(
             || "the traces are equal".to_owned(),

@@ -23,7 +23,7 @@ use thiserror::Error;
 use super::ReadObserver;
 
 use super::clock::LogClock;
-use super::decisions::Decisions;
+use super::decisions::{Decision, Decisions};
 use super::failure::{RecordedError, RecordingFailure, in_file};
 use super::trace_file::{TraceFile, begin, begins_as_trace, hosts_of};
 
@@ -185,15 +185,12 @@ impl Counted<'_> {
         let mut unknown = 0;
         for (cycle, followed) in plays {
             let Some(play) = &cycle.play else { continue };
-            let decided = |by_coordinator: bool| {
-                self.decisions.all.iter().find(|decision| {
-                    let note = &decision.note;
-                    decision.team == us.label()
-                        && (note.cycle, note.id) == (cycle.id.counter, Some(play.case.0))
-                        && (!by_coordinator || note.by == cycle.coordinator.number())
-                })
-            };
-            let noted = decided(true).or_else(|| decided(false));
+            let key = (cycle.id.counter, Some(play.case.0));
+            let of_cycle = self.decisions.all.iter().filter(|decision| {
+                decision.team == us.label() && (decision.note.cycle, decision.note.id) == key
+            });
+            let by_coordinator = |decision: &&Decision| decision.note.by == cycle.coordinator.number();
+            let noted = of_cycle.clone().find(by_coordinator).or_else(|| of_cycle.clone().next());
             let problem =
                 noted.and_then(|decision| problem::parse(&decision.note.problem.as_ref()?.to_string()).ok());
             let Some(problem) = problem else {

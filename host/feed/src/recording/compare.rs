@@ -128,9 +128,9 @@ pub fn compare(files: [&Path; 2], with: PlaySettings<'_>) -> Result<Report, Reco
     }
     if let Some((i, first)) = more {
         let ended = pair[1 - i].span.map_or(0.0, |(_, last)| last.0 as f64 * 1e-6);
-        let words =
+        let texts =
             (format!("ends at {ended:.6} s"), format!("goes on: {}", unlike::whole(&first, &colours)));
-        let (a, b) = if i == 0 { (words.1, words.0) } else { words };
+        let (a, b) = if i == 0 { (texts.1, texts.0) } else { texts };
         comparison.find(first.at.0 as f64 * 1e-6, What::Length, || ("records".to_owned(), a, b));
     }
     let ended = [pair[0].finish()?, pair[1].finish()?];

@@ -198,46 +198,19 @@ impl Comparison {
 
     /// Decisions on cases, in the order of time: two are the same where all that is known of them is.
     pub(super) fn decisions(&mut self, a: &[Decision], b: &[Decision]) {
-        let values = |list: &[Decision]| -> Vec<Value> {
-            list.iter().map(|decision| serde_json::to_value(decision).unwrap_or_default()).collect()
-        };
-        let (a, b) = (values(a), values(b));
-        let text = |decision: Option<&Value>| {
-            decision.map_or_else(
-                || "no decision".to_owned(),
-                |d| match d["case"].as_str() {
-                    Some(case) => {
-                        format!("robot {} at {} s: {}", d["by"], d["at_s"], excerpt(case, SETTING_LEN))
-                    }
-                    None => format!("robot {} at {} s: no case", d["by"], d["at_s"]),
-                },
-            )
-        };
         if let Some(i) = (0..a.len().max(b.len())).find(|i| a.get(*i) != b.get(*i)) {
             let (one, two) = (a.get(i), b.get(i));
             let at_s =
-                [one, two].into_iter().flatten().filter_map(|d| d["at_s"].as_f64()).fold(f64::MAX, f64::min);
-            let team = one.or(two).and_then(|d| d["team"].as_str()).unwrap_or_default().to_owned();
-            let (mut left, mut right) = (text(one), text(two));
+                [one, two].into_iter().flatten().map(|decision| decision.at_s).fold(f64::MAX, f64::min);
+            let team = one.or(two).map_or("", |decision| decision.team).to_owned();
+            let (mut left, mut right) = (decision_text(one), decision_text(two));
             if left == right {
                 // Same robot, time and case: the problem or the grounds differ.
-                let whole = |d: Option<&Value>| d.map_or_else(String::new, ToString::to_string);
-                (left, right) = (whole(one), whole(two));
+                (left, right) = (json(one), json(two));
             }
             self.find(at_s, What::Decision, || (team, left, right));
         }
-        let known = |list: &[Value]| -> BTreeMap<String, i64> {
-            let mut counts = BTreeMap::new();
-            for decision in list {
-                *counts.entry(decision.to_string()).or_default() += 1;
-            }
-            counts
-        };
-        let (left, right) = (known(&a), known(&b));
-        let missing = |of: &BTreeMap<String, i64>, other: &BTreeMap<String, i64>| -> i64 {
-            of.iter().map(|(key, n)| (n - other.get(key).copied().unwrap_or(0)).max(0)).sum()
-        };
-        let different = missing(&left, &right).max(missing(&right, &left)) as usize;
+        let different = missing(a, b).max(missing(b, a));
         self.decisions = DecisionCounts { a: a.len(), b: b.len(), different };
     }
 
@@ -259,6 +232,30 @@ impl Comparison {
             settings: self.settings,
         }
     }
+}
+
+fn decision_text(decision: Option<&Decision>) -> String {
+    let Some(Decision { at_s, case, note, .. }) = decision else { return "no decision".to_owned() };
+    let case = case.as_deref().map_or_else(|| "no case".to_owned(), |case| excerpt(case, SETTING_LEN));
+    format!("robot {} at {} s: {case}", note.by, Value::from(*at_s))
+}
+
+fn json(decision: Option<&Decision>) -> String {
+    decision
+        .map_or_else(String::new, |decision| serde_json::to_value(decision).unwrap_or_default().to_string())
+}
+
+/// Decisions of `list` without the same one in `other`, each counted as often as it is missing.
+fn missing(list: &[Decision], other: &[Decision]) -> usize {
+    let mut left: Vec<&Decision> = other.iter().collect();
+    let mut missing = 0;
+    for decision in list {
+        match left.iter().position(|found| *found == decision) {
+            Some(found) => drop(left.remove(found)),
+            None => missing += 1,
+        }
+    }
+    missing
 }
 
 impl Report {

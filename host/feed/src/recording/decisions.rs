@@ -22,13 +22,13 @@ use crate::names::Names;
 const LATE_MAX: usize = 20;
 
 /// A decision of a team's coordinator.
-#[derive(Debug, Serialize)]
+#[derive(Debug, PartialEq, Serialize)]
 pub struct Decision {
-    at_s: f64,
+    pub(super) at_s: f64,
     /// The coordinator's team, "blue" or "yellow".
     pub team: &'static str,
     /// `region/name` of the case that is played; none where no case is.
-    case: Option<String>,
+    pub(super) case: Option<String>,
     #[serde(flatten)]
     /// The decision itself.
     pub note: DecisionNote,
@@ -85,8 +85,8 @@ impl Decisions {
             let us = host.settings().us;
             let cycles = &mut self.cycles[us as usize];
             cycles.receive(host, t, &self.names, &mut Vec::new());
-            let told: Vec<_> = cycles.told().to_vec();
-            self.all.extend(told.into_iter().map(|(at, note)| decision(&self.case_names, us, at, note)));
+            let reported: Vec<_> = cycles.reported_decisions().to_vec();
+            self.all.extend(reported.into_iter().map(|(at, note)| decision(&self.case_names, us, at, note)));
             self.receive_late(host);
         }
     }

@@ -77,8 +77,13 @@ pub enum RecordedError {
     #[error("{0}")]
     Damaged(String),
     /// A moment or event that the recording lacks.
-    #[error("{0}")]
-    NotThere(Missing),
+    #[error("{asked}{}", and_damage(damage.as_deref()))]
+    NotThere {
+        /// The moment or event, and the recording's end.
+        asked: String,
+        /// Place where the recording is cut or damaged, if it is.
+        damage: Option<String>,
+    },
     /// Why it cannot be compared with another trace, and what to do.
     #[error("{0}")]
     Unlike(String),
@@ -113,59 +118,6 @@ pub enum RecordedError {
     NoRecording,
 }
 
-/// A moment that a recording lacks.
-#[derive(Debug)]
-pub struct Missing {
-    /// A moment or event that was asked for.
-    pub asked: Asked,
-    /// Place where the recording is cut or damaged, if it is.
-    pub damage: Option<String>,
-}
-
-impl fmt::Display for Missing {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.damage {
-            None => write!(f, "{}", self.asked),
-            Some(damage) => write!(f, "{}; the file is damaged: {damage}", self.asked),
-        }
-    }
-}
-
-/// A moment or event that was asked for.
-#[derive(Debug, Error)]
-pub enum Asked {
-    /// A time after a trace's end, and the end; s.
-    #[error("{0} s is after its end; it ends at {1:.3} s")]
-    TraceTime(f64, f64),
-    /// An event of a trace.
-    #[error("{met} `{name}` in it, not {nth}; it ends at {end:.3} s")]
-    TraceEvent {
-        /// Number of such events in it.
-        met: u32,
-        /// Name of the event.
-        name: String,
-        /// Number that was asked for.
-        nth: u32,
-        /// End of the trace, s.
-        end: f64,
-    },
-    /// A time after a log's end, and the log's length; s.
-    #[error("it ends after {1:.3} s, before {0} s")]
-    LogTime(f64, f64),
-    /// An event of a log.
-    #[error("{met} `{name}` in it, not {nth}; it has: {}", listed(known))]
-    LogEvent {
-        /// Number of such events in it.
-        met: u32,
-        /// Name of the event.
-        name: String,
-        /// Number that was asked for.
-        nth: u32,
-        /// Names of the events that it has.
-        known: Vec<String>,
-    },
-}
-
-fn listed(known: &[String]) -> String {
-    if known.is_empty() { "no event".to_owned() } else { known.join(", ") }
+fn and_damage(damage: Option<&str>) -> String {
+    damage.map_or_else(String::new, |damage| format!("; the file is damaged: {damage}"))
 }

@@ -20,7 +20,7 @@ pub use collect::{CollectError, OpenLibrary, collect};
 pub use compare::{PlaySettings, comparable, compare};
 pub use comparison::Report as ComparisonReport;
 pub use decisions::{Decision, Decisions, problem_line};
-pub use failure::{Asked, Missing, RecordedError, RecordingFailure, in_file};
+pub use failure::{RecordedError, RecordingFailure, in_file};
 pub use moment::{Moment, Score};
 pub use projector::{Projector, Shown};
 pub use sheet::Sheet;

@@ -66,20 +66,22 @@ struct Robot {
     decided: Option<Decided>,
 }
 
+impl Robot {
+    fn of(robot: &host::world::Robot, hosts: &[&Host]) -> Self {
+        Self {
+            id: robot.who.id.number(),
+            at: metres(robot.pose.position),
+            heading_deg: robot.pose.heading.radians().to_degrees(),
+            speed: robot.velocity.norm(),
+            confidence: robot.confidence,
+            decided: Decided::of(hosts, robot.who),
+        }
+    }
+}
+
 impl Moment {
     /// The moment of `world` and `game`, with what `hosts` order their robots.
     pub fn new(at_s: f64, event: Option<String>, world: &World, game: &Game, hosts: &[&Host]) -> Self {
-        let team = |colour| -> Vec<Robot> {
-            let robot = |robot: &host::world::Robot| Robot {
-                id: robot.who.id.number(),
-                at: metres(robot.pose.position),
-                heading_deg: robot.pose.heading.radians().to_degrees(),
-                speed: robot.velocity.norm(),
-                confidence: robot.confidence,
-                decided: Decided::of(hosts, robot.who),
-            };
-            world.team(colour).map(robot).collect()
-        };
         Self {
             at_s,
             event,
@@ -93,8 +95,8 @@ impl Moment {
                 velocity: [ball.velocity.x(), ball.velocity.y()],
                 confidence: ball.confidence,
             }),
-            blue: team(Colour::Blue),
-            yellow: team(Colour::Yellow),
+            blue: world.team(Colour::Blue).map(|robot| Robot::of(robot, hosts)).collect(),
+            yellow: world.team(Colour::Yellow).map(|robot| Robot::of(robot, hosts)).collect(),
         }
     }
 

@@ -64,7 +64,7 @@ impl<'a> Projector<'a> {
         beside: Option<Beside<'a>>,
     ) -> Self {
         if let Some(beside) = &beside {
-            observer.note(&printable(&beside.description()));
+            observer.note(&printable(&beside.first_difference()));
         }
         let (composer, ledger) = (Composer::new(library, log), LedgerFeed::new(library));
         Self { page, observer, composer, ledger, due: f64::NEG_INFINITY, beside }
@@ -176,9 +176,9 @@ impl<'a> Projector<'a> {
 
     /// Reports that the file is truncated, and where: it is not the end of the match.
     fn breaks_off(&mut self, now: Instant, damage: &str, feed: &Host, hosts: &[&Host]) {
-        let description = format!("the file breaks off: {damage}");
-        self.observer.note(&printable(&description));
-        self.page.push(MatchEvent::fault(now.0 as f64 * 1e-6, description));
+        let fault = format!("the file breaks off: {damage}");
+        self.observer.note(&printable(&fault));
+        self.page.push(MatchEvent::fault(now.0 as f64 * 1e-6, fault));
         self.due = f64::NEG_INFINITY;
         self.look(now, feed, hosts);
     }

@@ -75,9 +75,9 @@ impl<'f> TraceFile<'f> {
         self.reader.end().filter(|end| !end.is_whole()).map(ToString::to_string)
     }
 
-    /// Place where it is cut or damaged, or breaks off unnoticed: a trace that is not compressed has no end mark.
-    /// If packets to robots are missing after its last input, it was cut there: the hosts' decisions all come
-    /// before.
+    /// Place where it is cut or damaged, or breaks off unnoticed: a trace that is not compressed has no end
+    /// mark. If packets to robots are missing after its last input, it was cut there: the hosts' decisions
+    /// all come before.
     pub fn cut(&self, recheck: &Recheck) -> Result<Option<String>, RecordingFailure> {
         let unfinished = !is_gzipped(self.file)? && recheck.is_unfinished();
         Ok(self.damage().or_else(|| {

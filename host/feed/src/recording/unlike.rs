@@ -171,36 +171,29 @@ fn first_line(a: &str, b: &str) -> Option<(String, String, String)> {
 
 /// The first of ball and robots whose state differs, with both states.
 pub(super) fn worlds(a: &World, b: &World) -> Option<(String, String, String)> {
-    let ball = |world: &World| {
-        world.ball.as_ref().map_or_else(
-            || "not seen".to_owned(),
-            |ball| {
-                let (at, v) = (ball.position, ball.velocity);
-                format!("at ({}, {}) m, {} m high, ({}, {}) m/s", at.x(), at.y(), ball.height, v.x(), v.y())
-            },
-        )
-    };
-    let (left, right) = (ball(a), ball(b));
+    let (left, right) = (ball_text(a), ball_text(b));
     if left != right {
         return Some(("ball".to_owned(), left, right));
     }
-    let robot = |world: &World, who: Who| {
-        world.robot(who).map_or_else(
-            || "not seen".to_owned(),
-            |robot| {
-                let (at, v) = (robot.pose.position, robot.velocity);
-                let heading = robot.pose.heading.radians();
-                format!("at ({}, {}) m, heading {heading} rad, ({}, {}) m/s", at.x(), at.y(), v.x(), v.y())
-            },
-        )
-    };
     [Colour::Blue, Colour::Yellow]
         .into_iter()
         .flat_map(|colour| RobotId::all().map(move |id| Who { colour, id }))
         .filter(|who| a.robot(*who) != b.robot(*who))
-        .map(|who| (who, robot(a, who), robot(b, who)))
+        .map(|who| (who, robot_text(a, who), robot_text(b, who)))
         .find(|(_, left, right)| left != right)
         .map(|(who, left, right)| (format!("{} {}", who.colour.label(), who.id.number()), left, right))
+}
+
+fn ball_text(world: &World) -> String {
+    let Some(ball) = &world.ball else { return "not seen".to_owned() };
+    let (at, v) = (ball.position, ball.velocity);
+    format!("at ({}, {}) m, {} m high, ({}, {}) m/s", at.x(), at.y(), ball.height, v.x(), v.y())
+}
+
+fn robot_text(world: &World, who: Who) -> String {
+    let Some(robot) = world.robot(who) else { return "not seen".to_owned() };
+    let (at, v, heading) = (robot.pose.position, robot.velocity, robot.pose.heading.radians());
+    format!("at ({}, {}) m, heading {heading} rad, ({}, {}) m/s", at.x(), at.y(), v.x(), v.y())
 }
 
 #[cfg(test)]

@@ -14,8 +14,8 @@ use study::learning::{
 /// Longest file that is read, bytes.
 const LEN_MAX: u64 = 1 << 28;
 
-/// Evidence and proposals of a case. The files lie where `cases learn --out DIR` puts them: beside the directory of
-/// the league, or in it.
+/// Evidence and proposals of a case. The files lie where `cases learn --out DIR` puts them: beside the
+/// directory of the league, or in it.
 pub(super) fn of_case(library: Option<&Path>, files: &Files, case: &str) -> Result<Value, String> {
     let Some(directory) = library else { return Err(super::NO_DIRECTORY.to_owned()) };
     let evidence = found(directory, "evidence.jsonl");

@@ -296,11 +296,11 @@ fn named(name: &str) -> Result<(), String> {
 fn refused(findings: &[Finding]) -> String {
     let errors = findings.iter().filter(|finding| finding.severity == case_tools::Severity::Error);
     let count = errors.clone().count();
-    let told = |finding: &Finding| {
+    let line = |finding: &Finding| {
         let FindingNote { file, line, message, hint, .. } = FindingNote::of(finding);
         format!("{file}.toml:{line}: {message}; {hint}")
     };
-    let first = errors.map(told).next().unwrap_or_default();
+    let first = errors.map(line).next().unwrap_or_default();
     if count > 1 { format!("{first} (and {} more)", count - 1) } else { first }
 }
 

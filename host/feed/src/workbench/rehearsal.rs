@@ -140,7 +140,7 @@ impl Rehearsal {
                 })
             })
             .collect();
-        let (result, story) = (told(attempt), &tape.story);
+        let (result, story) = (result_of(attempt), &tape.story);
         Some(
             json!({ "number": number, "result": result, "ours": self.ours, "moments": moments, "story": story }),
         )
@@ -149,7 +149,7 @@ impl Rehearsal {
 
 /// Attempts to be watched: as different results as there are, the first of each.
 fn samples(attempts: &[Attempt]) -> Vec<Value> {
-    let results: Vec<_> = attempts.iter().map(told).collect();
+    let results: Vec<_> = attempts.iter().map(result_of).collect();
     let first = |number: &usize| !results[..*number].contains(&results[*number]);
     let (mut chosen, others): (Vec<usize>, Vec<usize>) = (0..attempts.len()).partition(first);
     chosen.extend(others);
@@ -159,7 +159,7 @@ fn samples(attempts: &[Attempt]) -> Vec<Value> {
 }
 
 /// Course of an attempt.
-fn told(attempt: &Attempt) -> String {
+fn result_of(attempt: &Attempt) -> String {
     match (&attempt.retrieved, attempt.end) {
         (Retrieved::Own, _) if attempt.completed() => {
             let outcome = attempt.outcome.map_or("in play", hil_sim::TrialOutcome::label);

@@ -1,5 +1,5 @@
-//! `endpoint`: a sender and a receiver for any address: multicast where it is a group, unicast where it is one
-//! machine's.
+//! `endpoint`: a sender and a receiver for any address: multicast where it is a group, unicast where it is
+//! one machine's.
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;

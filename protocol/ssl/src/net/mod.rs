@@ -1,8 +1,8 @@
 //! `net`: sockets of the league's network, for multicast and unicast, opened as the league's own programs do.
 //!
 //! [`Receiver`] receives a multicast group beside other programs on the same machine, [`Sender`] sends to
-//! one, [`Port`] is a UDP port of one's own (simulators, robots); [`NetReceiver`] and [`NetSender`] take either
-//! kind of address. [`Connection`] is a dialogue with the game controller. Every error names the fix.
+//! one, [`Port`] is a UDP port of one's own (simulators, robots); [`NetReceiver`] and [`NetSender`] take
+//! either kind of address. [`Connection`] is a dialogue with the game controller. Every error names the fix.
 //!
 //! **No async runtime.** A receive waits for at most the given time and allocates no memory, so one thread a
 //! socket, or one loop over all with a wait of zero, is simple and enough: a match has four to eight sockets

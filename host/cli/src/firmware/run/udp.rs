@@ -71,11 +71,7 @@ pub(super) fn run(address: SocketAddr, args: &RunArgs) -> Result<(), Failure> {
         let journal = args.journal.as_deref().map(|directory| prepare(directory, who)).transpose()?;
         let mut arguments = qemu_arguments(&image, Some(file), "null");
         arguments.extend(network_arguments(&network, who, journal.as_deref()));
-        let child = hil_sim::emulator_command(qemu.as_ref())
-            .args(arguments)
-            .stdin(Stdio::null())
-            .spawn()
-            .map_err(FirmwareError::Emulator)?;
+        let child = hil_sim::emulator_command(qemu.as_ref()).args(arguments).stdin(Stdio::null()).spawn()?;
         team.0.push((who.robot.number(), child));
     }
     let end = args.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
@@ -95,7 +91,7 @@ impl Team {
     /// An error as soon as one has ended.
     fn look(&mut self) -> Result<(), Failure> {
         for (robot, child) in &mut self.0 {
-            if let Some(status) = child.try_wait().map_err(FirmwareError::Emulator)? {
+            if let Some(status) = child.try_wait()? {
                 let what = format!("the emulator of robot {robot} ended ({status}); its output is above");
                 return Err(FirmwareError::Team(what).into());
             }
@@ -159,7 +155,7 @@ fn prepare(directory: &Path, who: &Provision) -> Result<PathBuf, Failure> {
         file.set_len(JOURNAL_LEN as u64)?;
         file.write_all(&journal::MAGIC)
     });
-    written.map_err(at(&path, FirmwareError::File))?;
+    written.map_err(at(&path))?;
     Ok(path)
 }
 

@@ -3,36 +3,25 @@
 use protocol::RobotId;
 use thiserror::Error;
 
-/// Why the verb ends.
 #[derive(Debug, Error)]
 pub(super) enum BringUpError {
-    /// A simulator has no robot to be wired.
     #[error(
         "--robots: a simulator's robots have nothing to be wired; give udp://HOST:PORT or serial:DEVICE[:BAUD]"
     )]
     Simulator,
-    /// No report came at all.
     #[error(
         "no robot reported its checks for {seconds} s: {hint} It must run its board's example bring_up_BOARD and have \
          its page (onetwo firmware provision, onetwo firmware flash --page); what it finds is on its log too \
          (docs/boards.md)"
     )]
-    Silent {
-        /// Silence, s.
-        seconds: f64,
-        /// Parts to look at.
-        hint: String,
-    },
-    /// No further report came.
+    Silent { seconds: f64, hint: String },
     #[error(
         "robot {robot} fell silent {seconds} s ago; checks without a result: {}. Is it on, in range, and its \
          radio plugged in? What it finds is on its log too (docs/boards.md)",
         open.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
     )]
     WentSilent {
-        /// The robot that had reported.
         robot: RobotId,
-        /// Silence, s.
         seconds: f64,
         /// Numbers of the checks without a result.
         open: Vec<usize>,

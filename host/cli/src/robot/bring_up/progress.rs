@@ -146,7 +146,6 @@ impl Progress {
         events
     }
 
-    /// Every check has a result.
     pub(super) fn is_complete(&self) -> bool {
         self.summary().is_some_and(|summary| summary.open.is_empty())
     }
