@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_machine_is_spoken_to_and_received_straight() {
+    fn unicast_needs_no_group() {
         let any: SocketAddr = ([127, 0, 0, 1], 0).into();
         let port = Port::bind(any).expect("a port").address();
         let mut receiver = NetReceiver::open(port, &Interfaces::All).expect("the port is free again");
