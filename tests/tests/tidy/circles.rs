@@ -158,8 +158,7 @@ fn a_circle_is_found_through_braces_and_a_hierarchy_is_none() {
 }
 
 /// Circles that are left, by crate: files in the order of their names. Only to be shortened.
-const KNOWN: [(&str, &[&str]); 12] = [
-    ("casebase", &["case", "index", "path", "plan_simulation", "stored", "table"]),
+const KNOWN: [(&str, &[&str]); 11] = [
     ("brain", &["belief", "body", "skills"]),
     ("brain", &["estimate", "execution"]),
     ("hil-sim", &["small_size::parameters", "small_size::wheels"]),
