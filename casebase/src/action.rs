@@ -26,7 +26,7 @@ impl CaseRobot {
         if index < TEAMMATES_MAX { Some(Self(index as u8)) } else { None }
     }
 
-    /// tm1.
+    /// First robot of a case, `tm1`.
     pub(crate) const FIRST: Self = Self(0);
 
     /// From 0; always below [`TEAMMATES_MAX`], even where the value came from outside.
@@ -78,12 +78,12 @@ pub enum Action {
 }
 
 impl Action {
-    /// Whether the ball is involved (docs/case-format.md §3.1: "ball action").
+    /// Returns whether the ball is involved (docs/case-format.md §3.1: "ball action").
     pub const fn concerns_ball(self) -> bool {
         !matches!(self, Self::Wait | Self::GoToPoint(_) | Self::Turn(_))
     }
 
-    /// Its key in case files.
+    /// Key of the action in case files.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Wait => "wait",
@@ -130,7 +130,7 @@ pub enum KickAim {
         /// Rolling distance of the ball, mm.
         length_mm: i32,
     },
-    /// To a point of the attacked goal line.
+    /// Aim at a point of the attacked goal line.
     Goal {
         /// From the goal's centre, mm, left > 0 seen in attack.
         offset_mm: i32,
@@ -147,11 +147,11 @@ pub enum Primitive {
     ForwardSoft,
     /// Forward, over a long distance.
     ForwardHard,
-    /// To the robot's left side.
+    /// Kick to the robot's left side.
     Left,
-    /// To the robot's right side.
+    /// Kick to the robot's right side.
     Right,
-    /// With the strength of a pass.
+    /// Kick with the strength of a pass.
     Pass,
 }
 
@@ -160,7 +160,7 @@ impl Primitive {
     pub const ALL: [Self; 6] =
         [Self::Unspecified, Self::ForwardSoft, Self::ForwardHard, Self::Left, Self::Right, Self::Pass];
 
-    /// Its key in the league's file; empty for [`Primitive::Unspecified`].
+    /// Key in the league's file; empty for [`Primitive::Unspecified`].
     pub const fn label(self) -> &'static str {
         match self {
             Self::Unspecified => "",
@@ -198,9 +198,9 @@ pub struct FieldMm {
     pub margin: i32,
     /// Distance between the insides of the goal posts.
     pub goal_width: i32,
-    /// Of the penalty area, along x.
+    /// Depth of the penalty area, along x.
     pub penalty_depth: i32,
-    /// Of the penalty area, along y.
+    /// Width of the penalty area, along y.
     pub penalty_width: i32,
 }
 
@@ -222,7 +222,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn robots_are_distinguished_from_one() {
+    fn robots_are_numbered_from_one_in_files() {
         assert_eq!(CaseRobot::first(9).map(CaseRobot::number).collect::<heapless::Vec<_, 8>>(), [1, 2, 3, 4]);
         assert_eq!(CaseRobot::new(4), None);
     }
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn the_words_of_primitives_lead_back() {
+    fn labels_of_primitives_lead_back() {
         for primitive in Primitive::ALL.into_iter().skip(1) {
             assert_eq!(Primitive::from_label(primitive.label()), Some(primitive));
         }

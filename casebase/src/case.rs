@@ -3,7 +3,7 @@
 use protocol::CaseId;
 
 use crate::action::{Action, CaseRobot, KickId, TurnTarget};
-use crate::path::{Corridor, Leg, RelativeLeg};
+use crate::leg::{Corridor, Leg, LegKind, RelativeLeg};
 use crate::plan_simulation::{HandOver, Script, plan_simulation};
 use crate::presence::Presence;
 use crate::settings::SCOPE_EXPONENT;
@@ -23,12 +23,12 @@ pub struct Case<'a> {
 impl<'a> Case<'a> {
     #[inline]
     pub(crate) fn new(base: CaseBase<'a>, id: CaseId) -> Option<Self> {
-        let record_header = base.gates.get(usize::from(id.0))?;
+        let record_header = base.record_headers.get(usize::from(id.0))?;
         let group = base.groups.get(usize::from(id.0 / 4))?;
         Some(Self { base, id, record_header, group })
     }
 
-    /// Its number in the base: 4 × authored + symmetry.
+    /// Number in the base: 4 × authored + symmetry.
     pub const fn id(&self) -> CaseId {
         self.id
     }
@@ -64,7 +64,7 @@ impl<'a> Case<'a> {
         self.record_header.teammates as usize
     }
 
-    /// Its robots, in their order.
+    /// The case's robots, in their order.
     pub fn robots(&self) -> impl Iterator<Item = CaseRobot> + Clone + use<> {
         CaseRobot::first(self.teammates())
     }
@@ -101,7 +101,7 @@ impl<'a> Case<'a> {
         self.raw_opponents().iter().map(move |raw| (ball.plus(widen(raw.at)), scope(raw.inverse_scope)))
     }
 
-    /// What the scope of the opponent of that number, from 0, demands.
+    /// Demand of the scope of the opponent of that number, from 0.
     pub const fn presence(&self, opponent: usize) -> Presence {
         self.record_header.demands().get(opponent)
     }
@@ -111,7 +111,7 @@ impl<'a> Case<'a> {
         CaseRobot::new(usize::from(self.group.getter)).unwrap_or(CaseRobot::FIRST)
     }
 
-    /// Whether the ball lies in the ball's scope, at the paper's threshold.
+    /// Returns whether the ball lies in the ball's scope, at the paper's threshold.
     pub fn ball_in_scope(&self, ball: PointMm) -> bool {
         self.ball_exponent(ball) < SCOPE_EXPONENT
     }
@@ -140,7 +140,7 @@ impl<'a> Case<'a> {
         partner
     }
 
-    /// Its records.
+    /// The case by its records.
     #[inline]
     pub(crate) fn stored(&self) -> Option<Stored<'_, 'a>> {
         Stored::new(&self.base, self.id)
@@ -176,9 +176,9 @@ impl<'a> Case<'a> {
     pub(crate) fn relative_legs(&self, ball: PointMm) -> impl Iterator<Item = RelativeLeg> + use<'a> {
         let case = *self;
         self.raw_legs().iter().scan([0.0; 2], move |rest, raw| {
-            let corridor = Corridor::decode(&case.stored()?, raw, *rest, ball.to_f32());
+            let corridor = case.stored()?.corridor(raw, *rest, ball.to_f32());
             *rest = corridor.to();
-            RelativeLeg::decode(&case, raw, corridor)
+            case.leg(raw, corridor)
         })
     }
 
@@ -189,9 +189,20 @@ impl<'a> Case<'a> {
     }
 
     /// A point of the case by its number.
-    pub(crate) fn point(&self, index: u8) -> PointMm {
-        let points = part(self.base.points, self.group.points_at, self.group.points, self.copy());
-        points.get(usize::from(index)).map_or(PointMm::new(0, 0), |[x, y]| PointMm::new(*x, *y))
+    fn point(&self, index: u8) -> PointMm {
+        self.group.point(self.base.points, self.copy(), index)
+    }
+
+    /// A stored leg with its robot, action and kind.
+    fn leg(&self, raw: &RawLeg, corridor: Corridor) -> Option<RelativeLeg> {
+        let robot = CaseRobot::new(usize::from(raw.robot))?;
+        let action = usize::from(raw.action);
+        let kind = match self.action(robot, action)? {
+            Action::PassBall(receiver) => LegKind::Pass(receiver),
+            Action::Kick(id) => LegKind::Kick(id),
+            _ => return None,
+        };
+        Some(RelativeLeg(corridor.into_leg(robot, action, kind)))
     }
 
     const fn copy(&self) -> u16 {
@@ -223,6 +234,26 @@ impl<'a> Case<'a> {
             RawAction::KICK => Action::Kick(KickId(raw.argument)),
             _ => Action::Wait,
         }
+    }
+}
+
+impl<'a> CaseBase<'a> {
+    /// The stored case with this id; `None` if the table has no such case.
+    pub fn case(&self, id: CaseId) -> Option<Case<'a>> {
+        Case::new(*self, id)
+    }
+
+    /// Every stored case, lowest id first.
+    pub fn cases(&self) -> impl Iterator<Item = Case<'a>> + use<'a> {
+        let base = *self;
+        (0..base.len() as u32).filter_map(move |id| base.case(CaseId(id as u16)))
+    }
+}
+
+impl<'a> Stored<'_, 'a> {
+    /// The same case as [`Case`].
+    pub(crate) fn case(&self) -> Option<Case<'a>> {
+        Case::new(*self.base, self.id)
     }
 }
 

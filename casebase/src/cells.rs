@@ -4,6 +4,8 @@
 //! 32 bits name them all. Where the squares that an opponent scope overlaps and those that contain opponents
 //! have none in common, the scope is empty; otherwise it must be tested.
 
+use core::ops::RangeInclusive;
+
 use crate::settings::SCOPE_EXPONENT;
 use crate::{PointMm, Scope};
 
@@ -15,14 +17,6 @@ pub(crate) fn cell_of(from_ball: PointMm) -> u32 {
 
 /// The squares that a scope around `centre` overlaps at the paper's threshold, as bits.
 pub fn cells_of(centre: PointMm, scope: Scope) -> u32 {
-    // Beyond the border of a scope by more than the rounding error of single precision.
-    let reach = |radius: i32| (f64::from(radius) * (f64::from(SCOPE_EXPONENT) * 1.001)) as i32 + 1;
-    let squares =
-        |at: i32, radius: i32| (at - reach(radius)) >> EDGE_BITS..=(at + reach(radius)) >> EDGE_BITS;
-    let gap = |at: i32, square: i32, radius: i32| {
-        let (low, high) = (square << EDGE_BITS, (square + 1) << EDGE_BITS);
-        f64::from((low - at).max(at - high).max(0)) / f64::from(radius)
-    };
     let mut cells = 0;
     for row in squares(centre.y, scope.y) {
         for column in squares(centre.x, scope.x) {
@@ -33,6 +27,19 @@ pub fn cells_of(centre: PointMm, scope: Scope) -> u32 {
         }
     }
     cells
+}
+
+/// Squares along one axis that may overlap a scope of `radius` around `at`.
+fn squares(at: i32, radius: i32) -> RangeInclusive<i32> {
+    // Beyond the border of a scope by more than the rounding error of single precision.
+    let reach = (f64::from(radius) * (f64::from(SCOPE_EXPONENT) * 1.001)) as i32 + 1;
+    (at - reach) >> EDGE_BITS..=(at + reach) >> EDGE_BITS
+}
+
+/// Distance along one axis from `at` to a square, in radii; 0 inside.
+fn gap(at: i32, square: i32, radius: i32) -> f64 {
+    let (low, high) = (square << EDGE_BITS, (square + 1) << EDGE_BITS);
+    f64::from((low - at).max(at - high).max(0)) / f64::from(radius)
 }
 
 #[inline]
@@ -49,7 +56,7 @@ mod tests {
     use crate::testing::Stream;
 
     #[test]
-    fn whoever_stands_in_a_scope_stands_in_one_of_its_squares() {
+    fn a_point_in_a_scope_lies_in_one_of_its_squares() {
         let mut stream = Stream::new(9);
         let mut below = |end: i32| stream.below(end as u64) as i32;
         let (mut inside, mut apart) = (0, 0);
@@ -64,7 +71,7 @@ mod tests {
             }
             apart += u32::from(!shares);
         }
-        assert!(inside > 2_000 && apart > 5_000, "{inside} inside, {apart} told apart");
+        assert!(inside > 2_000 && apart > 5_000, "{inside} inside, {apart} apart");
     }
 
     #[test]

@@ -20,7 +20,7 @@ use crate::settings::{CorrespondenceRule, CostRule, RetrievalSettings};
 pub(crate) struct Distances {
     /// One column per present robot: its id, and its distance to each part.
     pub(crate) columns: Vec<(RobotId, [f32; TEAMMATES_MAX]), PROBLEM_TEAMMATES_MAX>,
-    /// Number of parts.
+    /// Number of parts: robots of the case.
     pub(crate) parts: usize,
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct Assignment {
     pub(crate) players: Players,
     /// The part with the longest distance.
     pub(crate) farthest: usize,
-    /// That distance, mm.
+    /// Distance of that robot, mm.
     pub(crate) distance: f32,
 }
 
@@ -127,10 +127,10 @@ pub(crate) fn assign_within(distances: &Distances, rule: CostRule, limit: f32) -
 fn least_sum(distances: &Distances, limit: f32) -> Option<u16> {
     let full = full_set(distances)?;
     // For every set of parts: the minimum sum so far and its ids, the sum above the ids.
-    let mut best = [NEVER; SETS];
+    let mut best = [UNREACHABLE_SUM; SETS];
     best[0] = 0;
     for (player, column) in &distances.columns {
-        let mut with = [NEVER; TEAMMATES_MAX];
+        let mut with = [UNREACHABLE_SUM; TEAMMATES_MAX];
         for (part, (with, distance)) in with.iter_mut().zip(column).enumerate().take(distances.parts) {
             if *distance <= limit {
                 *with = u64::from(fixed(*distance)) << 16 | u64::from(shifted(*player, part));
@@ -147,7 +147,7 @@ fn least_sum(distances: &Distances, limit: f32) -> Option<u16> {
         }
     }
     let least = best[full & (SETS - 1)];
-    (least < NEVER).then_some(least as u16)
+    (least < UNREACHABLE_SUM).then_some(least as u16)
 }
 
 /// The minimum possible maximum.
@@ -177,10 +177,7 @@ fn first_within(distances: &Distances, bottleneck: u32, part: usize, used: u16, 
     }
     for player in RobotId::all() {
         let bit = 1 << player.number();
-        let fits = |(id, column): &(RobotId, [f32; TEAMMATES_MAX])| {
-            *id == player && column.get(part).is_some_and(|distance| fixed(*distance) <= bottleneck)
-        };
-        if used & bit == 0 && distances.columns.iter().any(fits) {
+        if used & bit == 0 && distances.reaches(player, part, bottleneck) {
             let before = *ids;
             *ids |= shifted(player, part);
             if first_within(distances, bottleneck, part + 1, used | bit, ids) {
@@ -190,6 +187,15 @@ fn first_within(distances: &Distances, bottleneck: u32, part: usize, used: u16, 
         }
     }
     false
+}
+
+impl Distances {
+    /// Returns whether the player's distance to the part is at most `bottleneck`.
+    fn reaches(&self, player: RobotId, part: usize, bottleneck: u32) -> bool {
+        self.columns.iter().any(|(id, column)| {
+            *id == player && column.get(part).is_some_and(|distance| fixed(*distance) <= bottleneck)
+        })
+    }
 }
 
 /// All parts, as a set; `None` where there are fewer robots than parts.
@@ -218,7 +224,7 @@ fn digit(packed: u16, part: usize) -> u8 {
 /// the rounding error of distances that can matter.
 const DISTINCT_MM: f32 = 0.02;
 /// Above every sum; five times this value still fits.
-const NEVER: u64 = 1 << 60;
+const UNREACHABLE_SUM: u64 = 1 << 60;
 /// Number of sets of parts.
 const SETS: usize = 1 << TEAMMATES_MAX;
 
@@ -279,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn it_equals_the_enumeration_of_all_maps() {
+    fn the_assignment_equals_the_enumeration_of_all_maps() {
         let mut stream = Stream::new(1);
         for round in 0..3000 {
             let (parts, robots) = (1 + stream.below(4) as usize, stream.below(12) as usize);
@@ -304,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn in_the_papers_trapezoid_the_sum_keeps_the_paths_apart_and_the_maximum_crosses_them() {
+    fn in_the_papers_trapezoid_only_the_maximum_lets_paths_cross() {
         // Fig. 6: robots 1 and 2, places A and B; c = d(1, A) is short, b = d(2, B) the long side, both
         // diagonals shorter than b.
         let (robot1, robot2) = ([0.0, 0.0], [-400.0, 300.0]);

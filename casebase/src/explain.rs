@@ -11,7 +11,8 @@ use protocol::{CaseId, RobotId};
 use crate::action::CaseRobot;
 use crate::case::Case;
 use crate::correspondence::{assign, assign_within};
-use crate::path::{Leg, blocked_leg};
+use crate::leg::Leg;
+use crate::path::blocked_leg;
 use crate::presence::Presence;
 use crate::problem::Problem;
 use crate::query::{Query, UnmetDemand};
@@ -30,7 +31,7 @@ pub enum CaseVerdict {
         /// Difference to the threshold.
         margin: f32,
     },
-    /// There are fewer robots than the case needs.
+    /// The problem has fewer robots than the case needs.
     Robots {
         /// Robots of the case.
         needed: usize,
@@ -69,7 +70,7 @@ pub enum CaseVerdict {
     Opponents {
         /// Number of the case's opponent, from 0.
         scope: usize,
-        /// What its scope demands.
+        /// Demand of the scope.
         presence: Presence,
         /// Number of the problem's opponent that stands in an excluding scope, from 0.
         opponent: Option<usize>,
@@ -79,7 +80,7 @@ pub enum CaseVerdict {
 }
 
 impl CaseVerdict {
-    /// Its label in answers.
+    /// Label of the verdict in answers.
     pub const fn label(&self) -> &'static str {
         match self {
             Self::Ball { .. } => "ball",

@@ -7,11 +7,7 @@
 //! because mirroring a case flips bits of its id. Lists are sorted by number of opponents, then of teammates,
 //! both falling: cases that can fulfil most conditions come first.
 
-use crate::settings::SCOPE_EXPONENT;
-use crate::symmetry::Symmetry;
-use crate::table::CaseBase;
 use crate::{FieldMm, PointMm};
-use geometry::GoalEnd;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// Shape of the grid.
@@ -42,33 +38,14 @@ impl Grid {
     /// either.
     #[inline]
     pub(crate) fn cell(&self, ball: [f32; 2]) -> usize {
+        self.step(ball, 1, self.rows) * usize::from(self.columns) + self.step(ball, 0, self.columns)
+    }
+
+    /// Number of the row or column, of `count`, along an axis.
+    #[inline]
+    fn step(&self, ball: [f32; 2], axis: usize, count: u16) -> usize {
         // Coordinates below the corner are cut off at 0 by the conversion.
-        let step = |axis: usize, count: u16| {
-            let cells = (ball[axis] - self.corner[axis]) * self.cells_per_mm;
-            (cells as usize).min(usize::from(count).wrapping_sub(1))
-        };
-        step(1, self.rows) * usize::from(self.columns) + step(0, self.columns)
-    }
-}
-
-impl CaseBase<'_> {
-    /// Every case under `goal` whose ball scope may contain `ball`: ids, with the bits to flip in them.
-    #[inline]
-    pub(crate) fn near(&self, [x, y]: [f32; 2], goal: GoalEnd) -> (&[u16], usize) {
-        let (x, other_goal) = match goal {
-            GoalEnd::Negative => (x, Symmetry::Identity),
-            GoalEnd::Positive => (-x, Symmetry::AcrossY),
-        };
-        let (y, other_side) = if y < 0.0 { (-y, Symmetry::AcrossX) } else { (y, Symmetry::Identity) };
-        let cell = self.header.grid.cell([x, y]);
-        let bounds = self.cell_starts.get(cell..).and_then(|starts| starts.first_chunk());
-        let list = bounds.and_then(|&[from, to]| self.cell_cases.get(from as usize..to as usize));
-        (list.unwrap_or(&[]), usize::from(other_goal.bits() | other_side.bits()))
-    }
-
-    /// Whether the index was built for scopes that end at this exponent.
-    #[inline]
-    pub(crate) fn index_serves(limit: f32) -> bool {
-        limit <= SCOPE_EXPONENT
+        let cells = (ball[axis] - self.corner[axis]) * self.cells_per_mm;
+        (cells as usize).min(usize::from(count).wrapping_sub(1))
     }
 }

@@ -51,7 +51,7 @@ impl From<PointMm> for (i32, i32) {
     }
 }
 impl From<Point<Field>> for PointMm {
-    /// To the nearest millimetre.
+    /// Rounds to the nearest millimetre.
     fn from(point: Point<Field>) -> Self {
         Self { x: quantized::whole_mm(point.x()), y: quantized::whole_mm(point.y()) }
     }

@@ -3,35 +3,18 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What a case demands of one of its opponent scopes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Presence {
-    /// An opponent inside it counts as a condition of the ranking (Ros et al. 2009, §3.4).
-    #[default]
-    Preferred,
-    /// Without an opponent inside it the case is no candidate; with one it counts as above.
-    Required,
-    /// With an opponent inside it the case is no candidate.
-    Excluded,
-}
-
-impl Presence {
-    /// All values.
-    pub const ALL: [Self; 3] = [Self::Preferred, Self::Required, Self::Excluded];
-
-    /// Its word in files.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Preferred => "preferred",
-            Self::Required => "required",
-            Self::Excluded => "excluded",
-        }
-    }
-
-    /// The value with this word.
-    pub fn from_label(label: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|value| value.label() == label)
+geometry::labels! {
+    /// Demand of a case on one of its opponent scopes.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Presence {
+        /// An opponent inside it counts as a condition of the ranking (Ros et al. 2009, §3.4).
+        #[default]
+        Preferred = "preferred",
+        /// An opponent must be inside it for the case to be a candidate; with one it counts as above.
+        Required = "required",
+        /// No opponent may be inside it for the case to be a candidate.
+        Excluded = "excluded",
     }
 }
 
@@ -41,14 +24,17 @@ impl Presence {
 pub struct Demands(u8);
 
 impl Demands {
-    /// Of the case's opponents in their order.
+    /// The demands of the case's opponents, in their order.
     pub fn of(opponents: impl IntoIterator<Item = Presence>) -> Self {
-        let bit = |(number, presence)| match presence {
-            Presence::Preferred => 0,
-            Presence::Required => 1_u8 << number,
-            Presence::Excluded => 16_u8 << number,
-        };
-        Self((0..4).zip(opponents).map(bit).fold(0, |bits: u8, bit: u8| bits | bit))
+        let mut bits = 0;
+        for (number, presence) in (0..4).zip(opponents) {
+            bits |= match presence {
+                Presence::Preferred => 0,
+                Presence::Required => 1_u8 << number,
+                Presence::Excluded => 16_u8 << number,
+            };
+        }
+        Self(bits)
     }
 
     /// From a table's byte.
@@ -57,18 +43,18 @@ impl Demands {
         Self(bits)
     }
 
-    /// As a table's byte.
+    /// Byte of a table.
     pub const fn bits(self) -> u8 {
         self.0
     }
 
-    /// Whether no scope demands anything.
+    /// Returns whether no scope demands anything.
     #[inline]
     pub(crate) const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Of the opponent of that number, from 0.
+    /// Demand on the opponent of that number, from 0.
     pub(crate) const fn get(self, number: usize) -> Presence {
         // Four numbers exist.
         let bits = self.0 >> (number & 3);
@@ -81,8 +67,8 @@ impl Demands {
         }
     }
 
-    /// Whether a case of so many opponents can have them: none of an opponent that it lacks, and never both
-    /// for one.
+    /// Returns whether a case with this number of opponents can have the demands: none of an opponent that it
+    /// lacks, and never both for one.
     pub(crate) const fn fits(self, opponents: u8) -> bool {
         let (required, excluded) = (self.0 & 15, self.0 >> 4);
         required & excluded == 0 && (required | excluded) as u32 >> opponents == 0

@@ -11,7 +11,8 @@ use crate::action::TEAMMATES_MAX;
 use crate::case::{Case, widen};
 use crate::cells::cell_of;
 use crate::correspondence::{Distances, Nearest, Players, assign, nearest};
-use crate::path::{empty_scopes, freedom, is_blocking, is_crisply_blocked, least_exponent};
+use crate::leg::{freedom, is_blocking};
+use crate::path::{empty_scopes, is_crisply_blocked, least_exponent};
 use crate::presence::Presence;
 use crate::problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
 use crate::rank::{Correspondence, Key, Match};
@@ -109,8 +110,7 @@ impl Query<'_> {
     fn search_unmet_demand(&self, case: &Stored<'_, '_>) -> Option<UnmetDemand> {
         let (demands, moved_by) = (case.record_header.demands(), self.scopes_moved_by(case));
         case.opponents()?.iter().enumerate().find_map(|(scope, record)| {
-            let holds = |at: &[f32; 2]| record.holds(moved_by, *at, self.key.limit);
-            let inside = self.opponents.iter().position(holds);
+            let inside = self.opponents.iter().position(|at| record.holds(moved_by, *at, self.key.limit));
             match (demands.get(scope), inside) {
                 (Presence::Required, None) => Some(UnmetDemand { scope, opponent: None }),
                 (Presence::Excluded, Some(_)) => Some(UnmetDemand { scope, opponent: inside }),
@@ -126,7 +126,7 @@ impl Query<'_> {
         empty_scopes(scopes, [0.0; 2], self.opponents, self.cells, self.key.limit, most)
     }
 
-    /// Whether an opponent stands in a leg as it is stored.
+    /// Returns whether an opponent stands in a leg as it is stored.
     #[inline(always)]
     pub(crate) fn is_crisply_blocked(&self, case: &Stored<'_, '_>) -> bool {
         is_crisply_blocked(case, self.key.ball, self.opponents, self.key.limit)
@@ -153,8 +153,8 @@ impl Query<'_> {
             return None;
         }
         let field = case.field();
-        let outside = |at: &[i16; 2]| !field.contains(self.problem.ball.plus(widen(*at)));
-        case.positions()?.iter().position(outside).and_then(CaseRobot::new)
+        let mut positions = case.positions()?.iter().map(|at| self.problem.ball.plus(widen(*at)));
+        positions.position(|at| !field.contains(at)).and_then(CaseRobot::new)
     }
 
     /// The nearest robot to each part as it is stored; `None` where no robot is near enough to one.
@@ -232,7 +232,7 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    /// With its similarity, the only exponential of a retrieval.
+    /// Completes the match by its similarity, the only exponential of a retrieval.
     pub(crate) fn into_match(self) -> Match {
         let Key { conditions, teammates, free, exponent, cost, case } = self.key;
         Match {

@@ -66,7 +66,7 @@ impl Key {
     }
 }
 
-/// [`rank_order`] on keys.
+/// Order of two candidates by their keys, as [`rank_order`].
 pub(crate) fn key_order(a: &Key, b: &Key, settings: &RetrievalSettings) -> Ordering {
     for criterion in settings.ranking {
         let order = match criterion {

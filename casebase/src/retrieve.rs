@@ -83,23 +83,23 @@ pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Retrieva
         if !CaseBase::index_serves(query.key.limit) {
             return retrieve(base, problem, settings).best;
         }
-        let mut race = Race { base, query, class: Class(0), best: None };
+        let mut search = BestSearch { base, query, class: Class(0), best: None };
         let key = query.key;
         let (list, flip) = base.near(key.ball, problem.defending);
         for id in list {
             let id = usize::from(*id) ^ flip;
-            let Some(record_header) = base.gates.get(id) else { continue };
+            let Some(record_header) = base.record_headers.get(id) else { continue };
             let Some(exponent) = key.exponent(record_header) else { continue };
-            if race.enter(CaseId(id as u16), record_header, exponent).is_break() {
+            if search.consider(CaseId(id as u16), record_header, exponent).is_break() {
                 break;
             }
         }
-        race.best.map(Found::into_match)
+        search.best.map(Found::into_match)
     })
 }
 
-/// Whether these are the choices of the paper, for which the bounds hold and the fast path is written.
-/// Numbers may differ.
+/// Returns whether these are the choices of the paper, for which the bounds hold and the fast path is
+/// written. Numbers may differ.
 #[inline]
 fn are_the_papers(settings: &RetrievalSettings) -> bool {
     let RetrievalSettings { ranking: [first, second, third], .. } = *settings;
@@ -118,7 +118,7 @@ fn are_the_papers(settings: &RetrievalSettings) -> bool {
     u64::from_le_bytes(choices) == u64::from_le_bytes(PAPER)
 }
 
-/// The paper's choices.
+/// Choices of the paper, one byte each.
 const PAPER: [u8; 8] = [
     Criterion::Conditions as u8,
     Criterion::Teammates as u8,
@@ -168,7 +168,7 @@ impl Class {
 }
 
 /// State of the search for the best candidate among cases with the ball in their scope.
-struct Race<'q, 'a> {
+struct BestSearch<'q, 'a> {
     base: &'q CaseBase<'a>,
     query: &'q Query<'q>,
     /// The class of the best candidate so far.
@@ -176,11 +176,11 @@ struct Race<'q, 'a> {
     best: Option<Found>,
 }
 
-impl<'a> Race<'_, 'a> {
+impl<'a> BestSearch<'_, 'a> {
     /// Tests a case whose bound reaches the class of the best candidate. Breaks where neither it nor any case
     /// with no higher bound can.
     #[inline(always)]
-    fn enter(&mut self, case: CaseId, record_header: &'a RecordHeader, exponent: f32) -> ControlFlow<()> {
+    fn consider(&mut self, case: CaseId, record_header: &'a RecordHeader, exponent: f32) -> ControlFlow<()> {
         // Lists are sorted by falling bound.
         let promise = Class::promise(record_header);
         if promise < self.class {
@@ -191,7 +191,7 @@ impl<'a> Race<'_, 'a> {
             && let Some(scopes) = record_header.opponents(self.base.places)
             && let Some(empty) = self.query.empty_scopes(scopes, allowed.conditions_above(self.class))
         {
-            self.look_at(case, record_header, exponent, allowed.without(empty));
+            self.judge(case, record_header, exponent, allowed.without(empty));
         }
         ControlFlow::Continue(())
     }
@@ -199,7 +199,7 @@ impl<'a> Race<'_, 'a> {
     /// Tests a case whose class is at least the best candidate's, and replaces that candidate if this one is
     /// better.
     #[inline(never)]
-    fn look_at(&mut self, id: CaseId, record_header: &'a RecordHeader, exponent: f32, class: Class) {
+    fn judge(&mut self, id: CaseId, record_header: &'a RecordHeader, exponent: f32, class: Class) {
         let Self { base, query, .. } = *self;
         let case = &Stored { base, id, record_header };
         if query.is_crisply_blocked(case) || query.unmet_demand(case).is_some() {

@@ -47,63 +47,75 @@ pub struct RetrievalSettings {
     pub lookahead_s: f32,
 }
 
-/// When the travel limit applies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum CorrespondenceRule {
-    /// The cheapest correspondence is found, then tested (Algorithm 1 as printed).
-    MinThenTest,
-    /// Only correspondences within the limit are searched (the text of §3.2).
-    Constrained,
+geometry::labels! {
+    /// Time at which the travel limit applies.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum CorrespondenceRule {
+        /// The cheapest correspondence is found, then tested (Algorithm 1 as printed).
+        MinThenTest = "min-then-test",
+        /// Only correspondences within the limit are searched (the text of §3.2).
+        Constrained = "constrained",
+    }
 }
 
-/// Cost of a correspondence.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum CostRule {
-    /// The sum of the distances: the paper's choice, no crossing paths.
-    Sum,
-    /// The largest of the distances.
-    Max,
+geometry::labels! {
+    /// Cost of a correspondence.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum CostRule {
+        /// The sum of the distances: the paper's choice, no crossing paths.
+        Sum = "sum",
+        /// The largest of the distances.
+        Max = "max",
+    }
 }
 
-/// One step of the ranking.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Criterion {
-    /// More opponent scopes occupied.
-    Conditions,
-    /// More robots in the case.
-    Teammates,
-    /// Higher similarity interval, then lower cost.
-    IntervalCost,
+geometry::labels! {
+    /// One step of the ranking.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum Criterion {
+        /// More opponent scopes occupied.
+        Conditions = "conditions",
+        /// More robots in the case.
+        Teammates = "teammates",
+        /// Higher similarity interval, then lower cost.
+        IntervalCost = "interval-cost",
+    }
 }
 
-/// Treatment of an adapted position outside the lines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum OutOfField {
-    /// It stays where it is.
-    Keep,
-    /// It moves to the nearest point of the field; costs and legs follow.
-    Clamp,
-    /// The case is not a candidate.
-    Reject,
+geometry::labels! {
+    /// Treatment of an adapted position outside the lines.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum OutOfField {
+        /// The position stays where it is.
+        Keep = "keep",
+        /// The position moves to the nearest point of the field; costs and legs follow.
+        Clamp = "clamp",
+        /// The case is not a candidate.
+        Reject = "reject",
+    }
 }
 
-/// Position of the opponents' scopes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum ScopeRule {
-    /// Moved with the ball, as in the paper's text and Fig. 2b.
-    Translated,
-    /// At the case's own positions, as in the paper's formula.
-    Absolute,
+geometry::labels! {
+    /// Position of the opponents' scopes.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum ScopeRule {
+        /// Moved with the ball, as in the paper's text and Fig. 2b.
+        Translated = "translated",
+        /// At the case's own positions, as in the paper's formula.
+        Absolute = "absolute",
+    }
 }
 
-/// Required freedom of a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FreePathRule {
-    /// No opponent above the threshold in any leg.
-    Crisp,
-    /// Free to the degree 1 − max μ: a candidate needs `free_min`, and among cases equal so far the freer
-    /// ranks before interval and cost.
-    Fuzzy,
+geometry::labels! {
+    /// Required freedom of a path.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum FreePathRule {
+        /// No opponent above the threshold in any leg.
+        Crisp = "crisp",
+        /// Free to the degree 1 − max μ: a candidate needs `free_min`, and among cases equal so far the freer
+        /// ranks before interval and cost.
+        Fuzzy = "fuzzy",
+    }
 }
 
 impl Default for RetrievalSettings {
@@ -152,7 +164,7 @@ impl RetrievalSettings {
 /// A setting's value as text.
 pub type SettingValue = heapless::String<64>;
 
-/// Why a setting was refused.
+/// Reason why a setting was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SettingError {
     /// No setting has this name.
@@ -191,47 +203,10 @@ struct Setting {
     get: fn(&RetrievalSettings, &mut SettingValue) -> fmt::Result,
 }
 
-/// The labels of an option with two or three values.
-trait Description: Copy + PartialEq + 'static {
-    const DESCRIPTION: &'static [(&'static str, Self)];
-
-    fn parse(label: &str) -> Option<Self> {
-        Self::DESCRIPTION.iter().find(|(name, _)| *name == label).map(|(_, value)| *value)
-    }
-    fn label(self) -> &'static str {
-        Self::DESCRIPTION.iter().find(|(_, value)| *value == self).map_or("", |(name, _)| name)
-    }
-}
-impl Description for CorrespondenceRule {
-    const DESCRIPTION: &'static [(&'static str, Self)] =
-        &[("min-then-test", Self::MinThenTest), ("constrained", Self::Constrained)];
-}
-impl Description for CostRule {
-    const DESCRIPTION: &'static [(&'static str, Self)] = &[("sum", Self::Sum), ("max", Self::Max)];
-}
-impl Description for Criterion {
-    const DESCRIPTION: &'static [(&'static str, Self)] = &[
-        ("conditions", Self::Conditions),
-        ("teammates", Self::Teammates),
-        ("interval-cost", Self::IntervalCost),
-    ];
-}
-impl Description for OutOfField {
-    const DESCRIPTION: &'static [(&'static str, Self)] =
-        &[("keep", Self::Keep), ("clamp", Self::Clamp), ("reject", Self::Reject)];
-}
-impl Description for ScopeRule {
-    const DESCRIPTION: &'static [(&'static str, Self)] =
-        &[("translated", Self::Translated), ("absolute", Self::Absolute)];
-}
-impl Description for FreePathRule {
-    const DESCRIPTION: &'static [(&'static str, Self)] = &[("crisp", Self::Crisp), ("fuzzy", Self::Fuzzy)];
-}
-
 /// A permutation of the three criteria, with or without brackets.
 fn parse_ranking(value: &str) -> Option<[Criterion; 3]> {
     let inner = value.strip_prefix('[').and_then(|v| v.strip_suffix(']')).unwrap_or(value);
-    let mut criteria = inner.split(',').map(|name| Criterion::parse(name.trim()));
+    let mut criteria = inner.split(',').map(|name| Criterion::from_label(name.trim()));
     let ranking = [criteria.next()??, criteria.next()??, criteria.next()??];
     let all_different = ranking[0] != ranking[1] && ranking[1] != ranking[2] && ranking[0] != ranking[2];
     (criteria.next().is_none() && all_different).then_some(ranking)
@@ -245,13 +220,13 @@ const SETTINGS: &[Setting] = &[
     Setting {
         name: "correspondence",
         expected: "min-then-test or constrained",
-        set: |s, v| CorrespondenceRule::parse(v).map(|v| s.correspondence = v),
+        set: |s, v| CorrespondenceRule::from_label(v).map(|v| s.correspondence = v),
         get: |s, out| out.write_str(s.correspondence.label()),
     },
     Setting {
         name: "cost",
         expected: "sum or max",
-        set: |s, v| CostRule::parse(v).map(|v| s.cost = v),
+        set: |s, v| CostRule::from_label(v).map(|v| s.cost = v),
         get: |s, out| out.write_str(s.cost.label()),
     },
     Setting {
@@ -266,19 +241,19 @@ const SETTINGS: &[Setting] = &[
     Setting {
         name: "out_of_field",
         expected: "keep, clamp or reject",
-        set: |s, v| OutOfField::parse(v).map(|v| s.out_of_field = v),
+        set: |s, v| OutOfField::from_label(v).map(|v| s.out_of_field = v),
         get: |s, out| out.write_str(s.out_of_field.label()),
     },
     Setting {
         name: "scopes",
         expected: "translated or absolute",
-        set: |s, v| ScopeRule::parse(v).map(|v| s.scopes = v),
+        set: |s, v| ScopeRule::from_label(v).map(|v| s.scopes = v),
         get: |s, out| out.write_str(s.scopes.label()),
     },
     Setting {
         name: "free_path",
         expected: "crisp or fuzzy",
-        set: |s, v| FreePathRule::parse(v).map(|v| s.free_path = v),
+        set: |s, v| FreePathRule::from_label(v).map(|v| s.free_path = v),
         get: |s, out| out.write_str(s.free_path.label()),
     },
     Setting {
@@ -323,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_described_can_be_set_again() {
+    fn described_settings_can_be_set_again() {
         let mut changed = RetrievalSettings::default();
         for (name, value) in [
             ("correspondence", "constrained"),

@@ -7,7 +7,7 @@ use protocol::CaseId;
 
 use crate::PointMm;
 use crate::action::FieldMm;
-use crate::case::Case;
+use crate::leg::{Corridor, minus};
 use crate::table::{CaseBase, OpponentRecord, RawLeg, RecordHeader};
 
 /// The records of a stored case.
@@ -19,32 +19,25 @@ pub(crate) struct Stored<'q, 'a> {
 }
 
 impl<'q, 'a> Stored<'q, 'a> {
-    /// By its number; `None` beyond the last case.
+    /// Looks a case up by its number; `None` beyond the last case.
     #[inline]
     pub(crate) fn new(base: &'q CaseBase<'a>, id: CaseId) -> Option<Self> {
-        let record_header = base.gates.get(usize::from(id.0))?;
+        let record_header = base.record_headers.get(usize::from(id.0))?;
         Some(Self { base, id, record_header })
     }
 
-    /// The same case as [`Case`].
-    pub(crate) fn case(&self) -> Option<Case<'a>> {
-        Case::new(*self.base, self.id)
-    }
-
-    /// The league's field.
     #[inline]
     pub(crate) fn field(&self) -> FieldMm {
         self.base.field()
     }
 
-    /// B_c.
+    /// B_c: position of the ball in the case, mm.
     #[inline]
     pub(crate) fn ball(&self) -> PointMm {
         let [x, y] = self.record_header.ball;
         PointMm::new(x as i32, y as i32)
     }
 
-    /// Number of robots.
     #[inline]
     pub(crate) fn teammates(&self) -> u8 {
         self.record_header.teammates
@@ -56,7 +49,6 @@ impl<'q, 'a> Stored<'q, 'a> {
         self.record_header.positions(self.base.places)
     }
 
-    /// The opponents.
     #[inline]
     pub(crate) fn opponents(&self) -> Option<&'a [OpponentRecord]> {
         self.record_header.opponents(self.base.places)
@@ -70,7 +62,22 @@ impl<'q, 'a> Stored<'q, 'a> {
 
     /// A point of the case by its number, mm, relative to the case's ball. Used by few legs.
     #[inline(never)]
-    pub(crate) fn carried_to(&self, index: u8) -> [f32; 2] {
-        self.case().map_or([0.0; 2], |case| case.point(index).minus(case.ball()).to_f32())
+    fn carried_to(&self, index: u8) -> [f32; 2] {
+        let CaseId(id) = self.id;
+        let group = self.base.groups.get(usize::from(id / 4));
+        group.map_or([0.0; 2], |group| {
+            group.point(self.base.points, id & 3, index).minus(self.ball()).to_f32()
+        })
+    }
+
+    /// The corridor of a stored leg, relative to a ball at `ball`; `rest` is the end of the leg before.
+    #[inline]
+    pub(crate) fn corridor(&self, raw: &RawLeg, rest: [f32; 2], ball: [f32; 2]) -> Corridor {
+        let from = match raw.carried_to {
+            RawLeg::NOT_CARRIED => rest,
+            point => self.carried_to(point),
+        };
+        let to = if raw.flags & RawLeg::TO_FIELD == 0 { raw.to } else { minus(raw.to, ball) };
+        Corridor::new(from, to, raw.radii)
     }
 }

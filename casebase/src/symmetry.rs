@@ -10,23 +10,22 @@ use serde::{Deserialize, Serialize};
 
 use crate::PointMm;
 
-/// The symmetry of a stored case; the number is the case id modulo 4.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub enum Symmetry {
-    /// (x, y), same goal: as authored.
-    Identity,
-    /// (x, −y), same goal.
-    AcrossX,
-    /// (−x, y), other goal.
-    AcrossY,
-    /// (−x, −y), other goal.
-    Both,
+geometry::labels! {
+    /// The symmetry of a stored case; the number is the case id modulo 4.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+    pub enum Symmetry {
+        /// (x, y), same goal: as authored.
+        Identity = "identity",
+        /// (x, −y), same goal.
+        AcrossX = "across-x",
+        /// (−x, y), other goal.
+        AcrossY = "across-y",
+        /// (−x, −y), other goal.
+        Both = "both",
+    }
 }
 
 impl Symmetry {
-    /// All four in the order of their ids.
-    pub const ALL: [Self; 4] = [Self::Identity, Self::AcrossX, Self::AcrossY, Self::Both];
-
     /// From the lowest two bits of a case id.
     pub const fn from_bits(bits: u16) -> Self {
         match bits & 3 {
@@ -40,16 +39,6 @@ impl Symmetry {
     /// The lowest two bits of the ids of such cases.
     pub const fn bits(self) -> u16 {
         self as u16
-    }
-
-    /// Its label in files and answers.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Identity => "identity",
-            Self::AcrossX => "across-x",
-            Self::AcrossY => "across-y",
-            Self::Both => "both",
-        }
     }
 
     /// The image of a point or position.
@@ -71,7 +60,7 @@ impl Symmetry {
         }
     }
 
-    /// Whether left becomes right: true for the single reflections.
+    /// Returns whether left becomes right: true for the single reflections.
     pub const fn swaps_sides(self) -> bool {
         matches!(self, Self::AcrossX | Self::AcrossY)
     }

@@ -10,8 +10,8 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let (mut count, mut seed) = (1_000_000, 1);
     let mut arguments = std::env::args().skip(1);
-    while let Some(label) = arguments.next() {
-        match (label.as_str(), arguments.next().and_then(|value| value.parse().ok())) {
+    while let Some(argument) = arguments.next() {
+        match (argument.as_str(), arguments.next().and_then(|value| value.parse().ok())) {
             ("--count", Some(value)) => count = value,
             ("--seed", Some(value)) => seed = value,
             _ => {

@@ -54,15 +54,9 @@ fn read(file: &str, text: &str) -> Description {
 fn spec(of: &Description) -> String {
     let n = |path: &str| format!("{:?}_f32", of.number(path));
     let whole = |path: &str| format!("{}", of.number(path));
-    let drive = |table: &str| {
-        let [speed, acceleration, braking] =
-            ["speed", "acceleration", "braking"].map(|key| n(&format!("{table}.{key}")));
-        format!("DriveSpec {{ speed: {speed}, acceleration: {acceleration}, braking: {braking} }}")
-    };
-    let turn = |table: &str| {
-        let [rate, acceleration] = ["rate", "acceleration"].map(|key| n(&format!("{table}.{key}")));
-        format!("TurnSpec {{ rate: {rate}, acceleration: {acceleration} }}")
-    };
+    let drive =
+        |table| format!("DriveSpec {{ {} }}", fields(&n, table, &["speed", "acceleration", "braking"]));
+    let turn = |table| format!("TurnSpec {{ {} }}", fields(&n, table, &["rate", "acceleration"]));
     let slope = f64::from(of.number("kicker.chip_degrees")).to_radians().tan() as f32;
     let counts = 4.0 * of.number("wheels.encoder_lines") * of.number("wheels.encoder_gear");
     let fields = [

@@ -4,20 +4,20 @@
 //! Such a frame's payload begins with [`KIND`], which is no [`TeamMessage`](crate::team::TeamMessage): the
 //! images that play, and their host, do not know it. It is sealed under the robot's own key, as telemetry is;
 //! robots do not open it, and `onetwo control` refuses it for its payload. [`Frame`]'s epoch and counter
-//! order the frames, and [`BringUpReport::host`] tells a recording from a robot that is on.
+//! order the frames, and [`BringUpReport::host`] distinguishes a robot that is on from a recording.
 
 use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::frame::{Frame, Key, OVERHEAD, Refusal, Sender, TeamKeys};
-use crate::link::{Packet, decode, packet};
+use crate::frame::{Frame, Key, OVERHEAD, Refusal, Sender, TeamKeys, decode, packet};
+use crate::link::Packet;
 use crate::{RobotId, TeamId};
 
 /// A check of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Check {
-    /// Its voltage is measured, and within that of four cells.
+    /// The battery's voltage is measured, and within that of four cells.
     Battery,
     /// At rest wheels stand, the gyroscope knows its offset and the robot does not lie on its side.
     Rest,
@@ -25,7 +25,8 @@ pub enum Check {
     Wheel {
         /// 0 to 3: front right, back right, back left, front left.
         wheel: u8,
-        /// Its rim runs to the left, seen from the robot's centre: it would turn the robot counter-clockwise.
+        /// Direction: the rim runs to the left, seen from the robot's centre, as if to turn the robot
+        /// counter-clockwise.
         forwards: bool,
     },
     /// Frames of the host arrive.
@@ -55,7 +56,7 @@ const fn wheel(wheel: u8, forwards: bool) -> Check {
 }
 
 impl Check {
-    /// Its place in [`CHECKS`]; `None` of a wheel that does not exist.
+    /// Index in [`CHECKS`]; `None` of a wheel that does not exist.
     pub fn number(self) -> Option<usize> {
         CHECKS.iter().position(|known| *known == self)
     }
@@ -77,7 +78,7 @@ const WHEELS: usize = 4;
 const NAMES: [&str; WHEELS] = ["front right", "back right", "back left", "front left"];
 
 impl fmt::Display for Check {
-    /// What is checked, and what a person has to see or do.
+    /// Writes what is checked, and what a person has to see or do.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Battery => f.write_str("battery: nothing moves"),
@@ -95,36 +96,36 @@ impl fmt::Display for Check {
     }
 }
 
-/// What is wrong.
+/// Fault that a check has found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Finding {
     /// The battery's voltage is not measured.
     NoVoltage,
-    /// Its voltage, V, is none of four cells.
+    /// The battery's voltage, V, is none of four cells.
     Voltage(f32),
     /// No gyroscope answers, or it never came to rest.
     NoGyroscope,
     /// The turning rate at rest, rad/s.
     Drifts(f32),
-    /// The accelerometer says that the robot lies on its side.
+    /// The robot lies on its side, by its accelerometer.
     Tipped,
     /// This wheel moves although none is driven, m/s.
     MovesAlone(u8, f32),
     /// This wheel's encoder is known to be broken.
     NoEncoder(u8),
-    /// It is driven and no encoder sees anything.
+    /// The wheel is driven and no encoder sees anything.
     NoMotion,
-    /// It runs the wrong way, m/s.
+    /// The wheel runs the wrong way, m/s.
     Reversed(f32),
     /// Another wheel's encoder counts in its place, m/s.
     CountedBy(u8, f32),
     /// Another wheel moves too, m/s.
     MovesToo(u8, f32),
-    /// Its speed, and what the motor's constant says, m/s.
+    /// Speed of the wheel, and that by the motor's constant, m/s.
     Speed(f32, f32),
-    /// It does not stop without current, m/s.
+    /// The wheel does not stop without current, m/s.
     KeepsTurning(f32),
-    /// Nothing was received.
+    /// No frame and no noise was received.
     Silent,
     /// Frames received and lost.
     Loses(u32, u32),
@@ -139,7 +140,7 @@ pub enum Finding {
 }
 
 impl fmt::Display for Finding {
-    /// What was measured, and what to look at.
+    /// Writes what was measured, and what to look at.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = |wheel: &u8| NAMES.get(usize::from(*wheel)).copied().unwrap_or("no");
         match self {
@@ -182,20 +183,20 @@ impl fmt::Display for Finding {
 /// frames received, s of interruption).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CheckReport {
-    /// Which check.
+    /// The check that has ended.
     pub check: Check,
-    /// What it measured, or what is wrong.
+    /// Measured value, or the fault.
     pub result: Result<f32, Finding>,
 }
 
-/// How a check stands.
+/// State of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum CheckState {
-    /// It runs.
+    /// The check runs, or waits for a person.
     Running,
-    /// It passed, with what it measured.
+    /// The check passed, with the measured value.
     Passed(f32),
-    /// What is wrong.
+    /// The check found this fault.
     Failed(Finding),
 }
 
@@ -205,7 +206,7 @@ impl From<Result<f32, Finding>> for CheckState {
     }
 }
 
-/// A robot tells the host how one of its checks stands; each is told again and again, so that a lost frame
+/// A robot reports the state of one of its checks to the host; each is repeated, so that a lost frame
 /// only delays.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BringUpReport {
@@ -213,9 +214,9 @@ pub struct BringUpReport {
     /// was not checked: it shows that the report is not older than that host.
     #[serde(with = "postcard::fixint::le")]
     pub host: u32,
-    /// Which check.
+    /// The check that is reported.
     pub check: Check,
-    /// How it stands.
+    /// State of the check.
     pub state: CheckState,
 }
 
@@ -224,16 +225,16 @@ pub const KIND: u8 = crate::team::BRING_UP;
 /// The longest payload: kind, host, a wheel's check, and a finding with two counts.
 const REPORT_LEN_MAX: usize = 1 + 4 + 3 + 1 + 1 + 10;
 
-/// Who seals reports.
+/// Robot that seals reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reporter {
-    /// The robot's team.
+    /// Team of the robot.
     pub team: TeamId,
-    /// Its number.
+    /// Number of the robot.
     pub robot: RobotId,
-    /// Its key with the host.
+    /// Key of the robot with the host.
     pub key: Key,
-    /// Its boot epoch.
+    /// Boot epoch of the robot.
     pub epoch: u32,
 }
 
@@ -251,7 +252,7 @@ impl Reporter {
     }
 }
 
-/// Whether this frame claims to carry a report; nothing is checked.
+/// Returns whether this frame claims to carry a report; nothing is checked.
 pub fn is_report(frame: &Frame<'_>) -> bool {
     frame.payload.first() == Some(&KIND) && frame.sender.robot().is_some()
 }

@@ -23,7 +23,7 @@ const REPORT_LEN_MAX: usize = HEAD_LEN + 2 * TEAM_MAX * 4;
 /// The case of a report without one.
 const NO_CASE: u16 = u16::MAX;
 
-/// What a decision rests on.
+/// Grounds of a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grounds {
     /// Retrieval's answer to the problem, whatever it was.
@@ -36,7 +36,7 @@ pub enum Grounds {
     Proposed,
     /// The reactive behaviour was expected to shoot sooner than the best case: no case.
     ShootsSooner,
-    /// It knew of no ball: there was no problem, and the report's robots and ball say nothing.
+    /// No ball was known: there was no problem, and the report's robots and ball say nothing.
     NoBall,
 }
 
@@ -45,11 +45,11 @@ pub enum Grounds {
 pub struct DecisionReport {
     /// The cycle that it decided.
     pub cycle: CycleId,
-    /// What it rests on.
+    /// Grounds of the decision.
     pub grounds: Grounds,
     /// The case that is played; `None` for "no case fits".
     pub case: Option<CaseId>,
-    /// The goal defended.
+    /// The goal that the team defends.
     pub defending: GoalEnd,
     /// The ball retrieved with, mm, field frame.
     pub ball: WirePoint,
@@ -66,7 +66,7 @@ pub struct DecisionPart {
     pub cycle: CycleId,
     /// Number of the part, from 0.
     pub part: u8,
-    /// Number of parts.
+    /// Number of parts of the whole report.
     pub parts: u8,
     /// Bytes of the report; all parts but the last are full.
     pub bytes: heapless::Vec<u8, PART_LEN>,
@@ -80,7 +80,7 @@ pub struct PackedReport {
 }
 
 impl PackedReport {
-    /// Number of parts.
+    /// Number of parts of the whole report.
     pub fn parts(&self) -> u8 {
         self.bytes.len().div_ceil(PART_LEN) as u8
     }
@@ -95,7 +95,7 @@ impl PackedReport {
         DecisionPart { cycle: self.cycle, part, parts: self.parts(), bytes }
     }
 
-    /// The report.
+    /// The report, once all parts are there and decode.
     pub fn report(&self) -> Option<DecisionReport> {
         DecisionReport::parse(self.cycle, &self.bytes)
     }
@@ -123,21 +123,17 @@ impl DecisionReport {
         // The capacity is that of the longest report: everything fits.
         let _ = out.push(kind | robot << 3 | positive << 7);
         let _ = out.extend_from_slice(&case.to_le_bytes());
-        let place = |out: &mut heapless::Vec<u8, REPORT_LEN_MAX>, at: &WirePoint| {
-            let ([a, b], [c, d]) = (at.x.to_le_bytes(), at.y.to_le_bytes());
-            let _ = out.extend_from_slice(&[a, b, c, d]);
-        };
-        place(&mut out, &self.ball);
+        let _ = out.extend_from_slice(&point_bytes(self.ball));
         let _ = out.extend_from_slice(&among.to_le_bytes());
         let _ = out.push(self.opponents.len() as u8);
         // By number: the receiver has the numbers as a set.
         for id in RobotId::all().filter(|id| among >> id.number() & 1 == 1) {
             if let Some((_, at)) = self.teammates.iter().find(|(teammate, _)| *teammate == id) {
-                place(&mut out, at);
+                let _ = out.extend_from_slice(&point_bytes(*at));
             }
         }
         for at in &self.opponents {
-            place(&mut out, at);
+            let _ = out.extend_from_slice(&point_bytes(*at));
         }
         out
     }
@@ -147,10 +143,6 @@ impl DecisionReport {
         let (head, rest) = bytes.split_first_chunk::<HEAD_LEN>()?;
         let [grounds, c0, c1, x0, x1, y0, y1, m0, m1, count] = *head;
         let robot = RobotId::new(grounds >> 3 & 0xf)?;
-        let place = |at: &[u8; 4]| WirePoint {
-            x: i16::from_le_bytes([at[0], at[1]]),
-            y: i16::from_le_bytes([at[2], at[3]]),
-        };
         let among = u16::from_le_bytes([m0, m1]);
         let (places, odd) = rest.as_chunks::<4>();
         let ours = among.count_ones() as usize;
@@ -161,11 +153,11 @@ impl DecisionReport {
         let mut teammates = heapless::Vec::new();
         let ids = RobotId::all().filter(|id| among >> id.number() & 1 == 1);
         for (id, at) in ids.zip(ours) {
-            teammates.push((id, place(at))).ok()?;
+            teammates.push((id, point_of(*at))).ok()?;
         }
         let mut opponents = heapless::Vec::new();
         for at in theirs {
-            opponents.push(place(at)).ok()?;
+            opponents.push(point_of(*at)).ok()?;
         }
         let case = u16::from_le_bytes([c0, c1]);
         Some(Self {
@@ -181,7 +173,7 @@ impl DecisionReport {
             },
             case: (case != NO_CASE).then_some(CaseId(case)),
             defending: if grounds >> 7 == 1 { GoalEnd::Positive } else { GoalEnd::Negative },
-            ball: place(&[x0, x1, y0, y1]),
+            ball: point_of([x0, x1, y0, y1]),
             teammates,
             opponents,
         })
@@ -214,6 +206,16 @@ impl Assembler {
         self.done = true;
         DecisionReport::parse(part.cycle, &bytes)
     }
+}
+
+/// A point on the wire: x, then y, low byte first.
+fn point_bytes(at: WirePoint) -> [u8; 4] {
+    let ([a, b], [c, d]) = (at.x.to_le_bytes(), at.y.to_le_bytes());
+    [a, b, c, d]
+}
+
+fn point_of([a, b, c, d]: [u8; 4]) -> WirePoint {
+    WirePoint { x: i16::from_le_bytes([a, b]), y: i16::from_le_bytes([c, d]) }
 }
 
 #[cfg(test)]

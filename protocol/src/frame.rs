@@ -58,7 +58,7 @@ impl Sender {
         }
     }
 
-    /// Its number on the wire, 0–16.
+    /// Number on the wire, 0–16.
     pub const fn number(self) -> u8 {
         match self {
             Self::Robot(robot) => robot.number(),
@@ -93,7 +93,7 @@ const HOST_TO_SEVERAL: u8 = HOST + 1;
 pub struct Audience(pub u16);
 
 impl Audience {
-    /// Whether that robot is in it.
+    /// Returns whether that robot is in the audience.
     pub const fn has(self, robot: RobotId) -> bool {
         self.0 & (1 << robot.number()) != 0
     }
@@ -103,7 +103,7 @@ impl Audience {
         self.0.count_ones() as usize
     }
 
-    /// Whether there is none.
+    /// Returns whether there is no robot.
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
@@ -142,18 +142,23 @@ pub struct Frame<'a> {
     pub payload: &'a [u8],
 }
 
-/// Why a frame was refused; each kind is counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reason why a frame was refused; each kind is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// Shorter than an empty frame or longer than [`FRAME_LEN_MAX`].
+    #[error("frame of {0} bytes")]
     Length(usize),
     /// Another version of the layout.
+    #[error("frame of version {0}, this is {VERSION}")]
     Version(u8),
     /// A frame of another team's network.
+    #[error("frame of team {}", .0.0)]
     Team(TeamId),
     /// No such sender, our own number, or one that does not send to us.
+    #[error("frame from impossible sender {0}")]
     Sender(u8),
     /// An earlier boot epoch of the sender.
+    #[error("frame of epoch {seen}, the sender is in {current}")]
     Epoch {
         /// The epoch in the frame.
         seen: u32,
@@ -161,6 +166,7 @@ pub enum Refusal {
         current: u32,
     },
     /// Not newer than the last frame of this epoch: a duplicate, a late frame or a replay.
+    #[error("frame {seen} is not after {last}")]
     Counter {
         /// The counter in the frame.
         seen: u32,
@@ -168,15 +174,19 @@ pub enum Refusal {
         last: u32,
     },
     /// The tag does not fit the key.
+    #[error("frame with a wrong tag")]
     Tag,
     /// The payload does not decode.
+    #[error("frame whose payload is no message")]
     Payload,
     /// A sender that has not named our present boot epoch: a new one, or a recording.
+    #[error("frame of a sender in epoch {epoch}, which has not named our epoch")]
     Unauthenticated {
         /// The epoch in the frame.
         epoch: u32,
     },
     /// The host's frame is older than [`crate::host_clock::AGE_MAX`]: withheld, or late.
+    #[error("frame of the host that is too old")]
     Stale,
 }
 
@@ -200,27 +210,6 @@ impl Refusal {
         }
     }
 }
-
-impl core::fmt::Display for Refusal {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Length(n) => write!(f, "frame of {n} bytes"),
-            Self::Version(v) => write!(f, "frame of version {v}, this is {VERSION}"),
-            Self::Team(t) => write!(f, "frame of team {}", t.0),
-            Self::Sender(s) => write!(f, "frame from impossible sender {s}"),
-            Self::Epoch { seen, current } => write!(f, "frame of epoch {seen}, the sender is in {current}"),
-            Self::Counter { seen, last } => write!(f, "frame {seen} is not after {last}"),
-            Self::Tag => f.write_str("frame with a wrong tag"),
-            Self::Payload => f.write_str("frame whose payload is no message"),
-            Self::Unauthenticated { epoch } => {
-                write!(f, "frame of a sender in epoch {epoch}, which has not named our epoch")
-            }
-            Self::Stale => f.write_str("frame of the host that is too old"),
-        }
-    }
-}
-
-impl core::error::Error for Refusal {}
 
 /// The sender that a frame claims to be from, by its header alone; nothing is checked.
 pub fn claimed_sender(bytes: &[u8]) -> Option<Sender> {
@@ -263,8 +252,8 @@ impl<'a> Frame<'a> {
         Ok(Self { team, sender, audience, epoch, counter, payload })
     }
 
-    /// Whether `bytes`, the whole of this frame, carry the tag that `key` gives; where there are several, in
-    /// `reader`'s place.
+    /// Returns whether `bytes`, the whole of this frame, carry the tag that `key` gives; where there are
+    /// several, in `reader`'s place.
     pub fn is_genuine(&self, bytes: &[u8], key: &Key, reader: RobotId) -> bool {
         let covered_len = bytes.len().wrapping_sub(tags_len(self.audience));
         let Some((covered, tags)) = bytes.split_at_checked(covered_len) else { return false };
@@ -293,7 +282,7 @@ impl<'a> Frame<'a> {
         self.write_to_audience(keys, &mut out).map(|()| out)
     }
 
-    /// As [`Self::emit`], to the end of `out`.
+    /// Appends the frame of [`Self::emit`] to `out`.
     #[inline]
     pub(crate) fn write(&self, key: &Key, out: &mut FrameBytes) -> Option<()> {
         if self.audience.is_some() {
@@ -304,7 +293,7 @@ impl<'a> Frame<'a> {
         out.extend_from_slice(&tag).ok()
     }
 
-    /// As [`Self::emit_to_audience`], to the end of `out`.
+    /// Appends the frame of [`Self::emit_to_audience`] to `out`.
     pub(crate) fn write_to_audience(&self, keys: &TeamKeys, out: &mut FrameBytes) -> Option<()> {
         let audience = self.audience?;
         self.write_covered(out)?;
@@ -376,6 +365,30 @@ impl Sessions {
     pub fn accept(&mut self, frame: &Frame<'_>) {
         self.last[frame.sender.index()] = Some((frame.epoch, frame.counter));
     }
+}
+
+/// The bytes of a frame; empty if it is too long for one.
+pub(crate) fn packet(frame: &Frame<'_>, key: &Key) -> FrameBytes {
+    let mut out = FrameBytes::new();
+    if frame.write(key, &mut out).is_none() {
+        out.clear();
+    }
+    out
+}
+
+/// The bytes as of [`packet`], with a tag for each of its audience.
+pub(crate) fn packet_to_audience(frame: &Frame<'_>, keys: &TeamKeys) -> FrameBytes {
+    let mut out = FrameBytes::new();
+    if frame.write_to_audience(keys, &mut out).is_none() {
+        out.clear();
+    }
+    out
+}
+
+/// Decodes a message that ends with the payload's last byte and whose ids exist.
+pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(payload: &'a [u8]) -> Option<T> {
+    let (message, rest) = postcard::take_from_bytes::<T>(payload).ok()?;
+    rest.is_empty().then_some(message)
 }
 
 #[cfg(test)]

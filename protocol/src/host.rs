@@ -34,19 +34,19 @@ pub const COMMAND_LEN_MAX: usize = 40 - crate::frame::OVERHEAD;
 /// A message of the host.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum HostMessage {
-    /// To all: a part of the snapshot.
+    /// Part of the snapshot, to all robots.
     World(WorldPart),
-    /// To one robot: its directive.
+    /// Directive, to one robot.
     Command(HostCommand),
-    /// To one robot: the host's answer to receiving it for the first time; repeated occasionally.
+    /// Welcome, to one robot: the host's answer to receiving it for the first time; repeated occasionally.
     Welcome(Welcome),
-    /// To one robot: how fast it may drive, while that differs from its own limits; repeated occasionally.
+    /// Limits of the drive, to one robot, while they differ from its own; repeated occasionally.
     Limits(DriveLimits),
 }
 
 impl HostMessage {
-    /// Whether the numbers in it are valid: the index of a part is less than the number of parts, which is
-    /// [`PARTS_MAX`] at most; limits are at least [`DriveLimits::SPEED_MIN`] and
+    /// Returns whether the numbers in it are valid: the index of a part is less than the number of parts,
+    /// which is [`PARTS_MAX`] at most; limits are at least [`DriveLimits::SPEED_MIN`] and
     /// [`DriveLimits::ACCELERATION_MIN`].
     pub fn is_sound(&self) -> bool {
         match self {
@@ -58,12 +58,12 @@ impl HostMessage {
         }
     }
 
-    /// Whether this payload is a command, a welcome or limits to that robot.
+    /// Returns whether this payload is a command, a welcome or limits to that robot.
     pub(crate) fn is_to_one(payload: &[u8], me: RobotId) -> bool {
         matches!(payload, [1..=3, to, ..] if *to == me.number())
     }
 
-    /// Whether it is a part of a snapshot.
+    /// Returns whether the payload is a part of a snapshot.
     pub(crate) fn is_to_all(payload: &[u8]) -> bool {
         matches!(payload, [0, ..])
     }
@@ -84,7 +84,7 @@ pub struct Welcome {
     pub offset: u32,
 }
 
-/// How fast a robot may drive. Its own limits hold where they are stricter, so that no message makes a robot
+/// Limits of a robot's drive. Its own limits hold where they are stricter, so that no message makes a robot
 /// faster than it is built for; braking is not limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DriveLimits {
@@ -207,9 +207,9 @@ pub struct HostCommand {
     pub defending: GoalEnd,
     /// The phase of the game, from our side.
     pub phase: Phase<Side>,
-    /// Its present role under the rules.
+    /// Role of the robot under the rules.
     pub rule_role: RuleRole,
-    /// What the robot is to do.
+    /// Order for the robot.
     pub directive: Directive,
 }
 
@@ -245,7 +245,7 @@ pub enum Directive {
         receiver: RobotId,
         /// Kick of the pass.
         kick: KickOrder,
-        /// Whether the ball may leave now.
+        /// True once the ball may leave.
         ready: bool,
     },
     /// Receive a passed ball at this place.
@@ -340,7 +340,7 @@ impl Condition {
     pub const BALL_CONTACT: Self = Self(1);
     /// The kicker is charged.
     pub const KICKER_READY: Self = Self(1 << 1);
-    /// It has tipped over.
+    /// The robot has tipped over.
     pub const TIPPED: Self = Self(1 << 2);
     /// The battery is too low to play.
     pub const BATTERY_LOW: Self = Self(1 << 3);

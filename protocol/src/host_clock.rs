@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn the_age_is_the_way_up_and_down_whatever_the_clocks_show() {
+    fn a_frames_age_is_the_round_trip_whatever_the_clocks_show() {
         // The host's clock is 7 s ahead; 20 ms up, 30 ms down. Both clocks wrap in between.
         for start in [0, 3_600_000, 274_877_900 - 50, 274_877_900 - 7_000] {
             let host = |at: u64| ticks(ms(start + at + 7_000));

@@ -8,10 +8,13 @@
 //! Until then its telemetry leads to a welcome and to nothing else, and its beacons and handshakes are
 //! refused. Telemetry comes under a key that only this robot and the host hold.
 
-use crate::frame::{Audience, Frame, PAYLOAD_LEN_MAX, Refusal, Sender, Sessions, TeamKey, TeamKeys};
+use crate::frame::{
+    Audience, Frame, PAYLOAD_LEN_MAX, Refusal, Sender, Sessions, TeamKey, TeamKeys, decode, packet,
+    packet_to_audience,
+};
 use crate::host::{HostMessage, Telemetry, Welcome};
 use crate::host_clock::TICK_BITS;
-use crate::link::{Packet, count, decode, packet, packet_to_audience};
+use crate::link::{Packet, count};
 use crate::team::TeamMessage;
 use crate::{Instant, RobotId, TeamId};
 
@@ -22,7 +25,7 @@ pub struct HostLink {
     keys: TeamKeys,
     epoch: u32,
     counter: u32,
-    /// When the epoch started, in ticks.
+    /// Start of the epoch, in ticks.
     zero: u64,
     audience: Audience,
     /// The newest telemetry of each robot that named our epoch, and the newest of its other frames.

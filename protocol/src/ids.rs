@@ -41,16 +41,9 @@ impl RobotId {
 }
 
 /// Error of an id above 15.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("robot ids are 0 to 15, not {0}")]
 pub struct NoSuchRobot(pub u8);
-
-impl fmt::Display for NoSuchRobot {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "robot ids are 0 to 15, not {}", self.0)
-    }
-}
-
-impl core::error::Error for NoSuchRobot {}
 
 impl TryFrom<u8> for RobotId {
     type Error = NoSuchRobot;
@@ -91,7 +84,7 @@ impl TeamId {
 pub struct Who {
     /// Colour of its team.
     pub colour: Colour,
-    /// Its shell number, 0–15.
+    /// Shell number of the robot, 0–15.
     pub id: RobotId,
 }
 

@@ -2,7 +2,7 @@
 //! memory that a PC can read afterwards.
 //!
 //! `magic 4 "1-2J" | used 4 LE | records`; a record is `length u16 LE | postcard` of [`Record`]. The magic is
-//! written by whoever wants a journal; a robot that does not find it writes none. `used` counts the bytes of
+//! written by the program that wants a journal; a robot that does not find it writes none. `used` counts the bytes of
 //! whole records. A memory that is full keeps what it has, and ends with [`Entry::Full`].
 
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::Instant;
 use crate::robot_io::{ActuatorFrame, SensorFrame};
 
-/// What marks a memory that is to hold a journal.
+/// Mark of a memory that is to hold a journal.
 pub const MAGIC: [u8; 4] = *b"1-2J";
 /// Bytes before the first record.
 pub const HEADER_LEN: usize = 8;
@@ -20,28 +20,28 @@ const RECORD_LEN_MAX: usize = 256;
 /// One thing that happened.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record<'a> {
-    /// When, by the robot's clock.
+    /// Time by the robot's clock.
     pub at: Instant,
-    /// What.
+    /// Input or output at that time.
     #[serde(borrow)]
     pub entry: Entry<'a>,
 }
 
-/// What a brain took in or gave out.
+/// Input or output of a brain.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Entry<'a> {
     /// The brain started, in this boot epoch.
     Start(u32),
-    /// It was given a packet.
+    /// A packet came in.
     Packet(&'a [u8]),
-    /// It was given a sensor frame.
+    /// A sensor frame came in.
     Sensors(SensorFrame),
-    /// It was given a deadline of its own.
+    /// A deadline of the brain was due.
     Timeout,
-    /// It sent a packet.
+    /// A packet was sent.
     Sent(&'a [u8]),
-    /// It gave orders.
+    /// Orders went to the actuators.
     Ordered(ActuatorFrame),
     /// The memory was full here.
     Full,
@@ -64,7 +64,7 @@ impl<'m> Writer<'m> {
         writer
     }
 
-    /// Adds a record.
+    /// Appends a record; a full memory takes no more.
     pub fn write(&mut self, at: Instant, entry: Entry<'_>) {
         if self.memory.is_empty() {
             return;
@@ -105,25 +105,16 @@ impl<'m> Writer<'m> {
 /// Bytes of the record [`Entry::Full`] with the largest time, its length included.
 const FULL_LEN: usize = 16;
 
-/// Why the rest of a journal cannot be read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reason why the rest of a journal cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JournalError {
-    /// It does not begin with the magic, or says that it is longer than its memory.
+    /// The memory does not begin with the magic, or the journal claims to be longer than its memory.
+    #[error("not a robot's journal: its header is missing or wrong")]
     Header,
     /// The record at this byte is cut off or no record.
+    #[error("the robot's journal is damaged at byte {0}")]
     Record(usize),
 }
-
-impl core::fmt::Display for JournalError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Header => f.write_str("not a robot's journal: its header is missing or wrong"),
-            Self::Record(at) => write!(f, "the robot's journal is damaged at byte {at}"),
-        }
-    }
-}
-
-impl core::error::Error for JournalError {}
 
 /// The records of a journal, in their order; ends after the first error.
 pub fn records(memory: &[u8]) -> Result<Records<'_>, JournalError> {
@@ -174,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_written_is_read_in_its_order() {
+    fn records_are_read_in_the_order_of_writing() {
         let mut memory = memory(1_000);
         let entries = [Entry::Start(7), Entry::Packet(&[1, 2, 3]), Entry::Timeout, Entry::Sent(&[9; 120])];
         let mut writer = Writer::new(&mut memory);

@@ -62,14 +62,14 @@ impl TeamKey {
     }
 
     fn derived(&self, purpose: u8, robot: RobotId) -> Key {
-        let half = |half: u8| {
+        let mut key = [0; 16];
+        for (half, bytes) in (0..).zip(key.as_chunks_mut::<8>().0) {
             let mut hasher = SipHasher24::new_with_key(&self.0);
-            hasher.write(LABEL);
+            hasher.write(DERIVATION_LABEL);
             hasher.write(&[purpose, robot.number(), half]);
-            hasher.finish().to_le_bytes()
-        };
-        let ([a, b, c, d, e, f, g, h], [i, j, k, l, m, n, o, p]) = (half(0), half(1));
-        Key([a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p])
+            *bytes = hasher.finish().to_le_bytes();
+        }
+        Key(key)
     }
 }
 
@@ -83,7 +83,7 @@ impl Key {
 }
 
 impl RobotKeys {
-    /// Whether these are the keys derived from [`TeamKey::ZERO`], which are public.
+    /// Returns whether these are the keys derived from [`TeamKey::ZERO`], which are public.
     pub fn are_open(&self, robot: RobotId) -> bool {
         *self == TeamKey::ZERO.of_robot(robot)
     }
@@ -114,7 +114,7 @@ impl fmt::Debug for Key {
 }
 
 /// Separates derived keys from any other input that is hashed under a team key; 2 is the frame's version.
-const LABEL: &[u8; 12] = b"onetwo key 2";
+const DERIVATION_LABEL: &[u8; 12] = b"onetwo key 2";
 
 #[cfg(test)]
 mod tests {

@@ -8,10 +8,9 @@
 //! (unauthenticated peer). The host's frames are refused as [`Refusal::Stale`] when they are older than
 //! [`AGE_MAX`](crate::host_clock::AGE_MAX).
 
-use crate::frame::{Frame, FrameBytes, Refusal, RobotKeys, Sender, Sessions, TeamKeys};
+use crate::frame::{Frame, FrameBytes, Refusal, RobotKeys, Sender, Sessions, TeamKeys, decode, packet};
 use crate::host::{HostMessage, PARTS_MAX, Telemetry, WorldPart};
 use crate::host_clock::{Age, HostClock, ticks};
-use crate::key::Key;
 use crate::peer::PeerTable;
 use crate::team::{Handshake, TEAM_MESSAGE_LEN_MAX, TeamMessage};
 use crate::{Duration, Instant, RobotId, TeamId};
@@ -27,7 +26,7 @@ pub enum Received {
     Teammate(RobotId, TeamMessage),
     /// A message of the host, sent at most [`Link::age`] ago.
     Host(HostMessage),
-    /// It is for another receiver: not opened, without any effect here.
+    /// A frame for another receiver: not opened, without any effect here.
     Elsewhere,
 }
 
@@ -78,7 +77,7 @@ impl Link {
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         self.counter = self.counter.wrapping_add(1);
         let sender = Sender::Robot(self.me);
-        // What it tells of itself goes to the host alone, and no teammate can send it in its name.
+        // Telemetry goes to the host alone, and no teammate can send it in the robot's name.
         let key = if TeamMessage::is_for_host(payload) { &self.keys.host } else { &self.keys.team };
         let (team, epoch, counter) = (self.team, self.epoch, self.counter);
         packet(&Frame { team, sender, audience: None, epoch, counter, payload }, key)
@@ -144,7 +143,7 @@ impl Link {
         Ok(frame)
     }
 
-    /// Whether a frame is addressed to this robot; its tag is not checked.
+    /// Returns whether a frame is addressed to this robot; its tag is not checked.
     #[inline]
     fn is_for_me(&self, frame: &Frame<'_>) -> bool {
         match (frame.sender, frame.audience) {
@@ -279,7 +278,7 @@ pub fn overhear(packet: &[u8], team: TeamId, keys: &TeamKeys) -> Result<(RobotId
     decode(frame.payload).map(|message| (robot, message)).ok_or(Refusal::Payload)
 }
 
-/// As [`overhear`], for the host's packets, read in `reader`'s place.
+/// Opens as [`overhear`] does, but the host's packets, read in `reader`'s place.
 pub fn overhear_host(
     packet: &[u8],
     team: TeamId,
@@ -296,35 +295,11 @@ pub fn overhear_host(
     host_message(frame.payload).ok_or(Refusal::Payload)
 }
 
-/// The frame as a packet; empty if it is too long for one.
-pub(crate) fn packet(frame: &Frame<'_>, key: &Key) -> Packet {
-    let mut out = Packet::new();
-    if frame.write(key, &mut out).is_none() {
-        out.clear();
-    }
-    out
-}
-
-/// As [`packet`], with a tag for each of its audience.
-pub(crate) fn packet_to_audience(frame: &Frame<'_>, keys: &TeamKeys) -> Packet {
-    let mut out = Packet::new();
-    if frame.write_to_audience(keys, &mut out).is_none() {
-        out.clear();
-    }
-    out
-}
-
 pub(crate) fn count(refused: &mut [u32; Refusal::KINDS], refusal: Refusal) {
     // There is one counter for each kind.
     if let Some(count) = refused.get_mut(refusal.kind()) {
         *count = count.saturating_add(1);
     }
-}
-
-/// Decodes a message that ends with the payload's last byte and whose ids exist.
-pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(payload: &'a [u8]) -> Option<T> {
-    let (message, rest) = postcard::take_from_bytes::<T>(payload).ok()?;
-    rest.is_empty().then_some(message)
 }
 
 fn host_message(payload: &[u8]) -> Option<HostMessage> {

@@ -12,10 +12,10 @@ use core::net::{Ipv4Addr, SocketAddrV4};
 pub const PAGE_LEN: usize = 32;
 const MAGIC: [u8; 4] = *b"1-2N";
 
-/// A robot's addresses.
+/// Addresses of a robot on the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NetworkPage {
-    /// Its own address.
+    /// Address of the robot.
     pub own: Ipv4Addr,
     /// Leading bits of the address that its network shares, at most 32.
     pub prefix: u8,
@@ -23,9 +23,9 @@ pub struct NetworkPage {
     pub gateway: Ipv4Addr,
     /// The port on which it receives radio frames.
     pub port: u16,
-    /// Where its radio frames go.
+    /// Destination of its radio frames.
     pub radio: SocketAddrV4,
-    /// Where orders to its body go, and sensor frames come from.
+    /// Destination of the orders to its body, and source of its sensor frames.
     pub body: SocketAddrV4,
 }
 
@@ -79,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_written_is_read_and_stands_where_the_description_says() {
+    fn a_page_is_read_as_written_at_the_specified_offsets() {
         let network = NetworkPage {
             own: Ipv4Addr::new(10, 0, 2, 15),
             prefix: 24,

@@ -15,8 +15,8 @@ pub struct PeerTable {
     teammates: [Option<Peer>; RobotId::COUNT],
     /// Teammates due for a handshake, a bit each: checked after every packet, and nearly always empty.
     owed: u16,
-    /// When this robot sent its last handshake.
-    greeted: Option<Instant>,
+    /// Time of this robot's last handshake.
+    last_handshake: Option<Instant>,
     /// Number of the teammate with which the next handshake starts, so that none is left out for ever.
     next: u8,
 }
@@ -25,9 +25,9 @@ pub struct PeerTable {
 struct Peer {
     /// The newest boot epoch received.
     boot_epoch: u32,
-    /// It has named our boot epoch: we trust it.
+    /// True once the teammate has named our boot epoch: we trust it.
     believed: bool,
-    /// It has reported that we named its boot epoch: it trusts us.
+    /// True once the teammate has reported that we named its boot epoch: it trusts us.
     believes: bool,
 }
 
@@ -53,7 +53,7 @@ impl PeerTable {
         self.owed |= bit(teammate);
     }
 
-    /// That boot epoch of a teammate, received already, has named our present one.
+    /// Records that this boot epoch of a teammate, received already, has named our present one.
     pub fn believe(&mut self, teammate: RobotId, boot_epoch: u32, bond: Bond) {
         let Some(known) =
             self.teammates[teammate.index()].as_mut().filter(|known| known.boot_epoch == boot_epoch)
@@ -69,7 +69,7 @@ impl PeerTable {
 
     /// The handshake to send now, if one is due.
     pub fn poll(&mut self, now: Instant) -> Option<Handshake> {
-        if self.owed == 0 || self.greeted.is_some_and(|last| now.since(last) < SHAKE_HANDS_EVERY) {
+        if self.owed == 0 || self.last_handshake.is_some_and(|last| now.since(last) < HANDSHAKE_PERIOD) {
             return None;
         }
         let mut teammates: heapless::Vec<KnownEpoch, KNOWN_EPOCHS_MAX> = heapless::Vec::new();
@@ -92,14 +92,14 @@ impl PeerTable {
         if teammates.is_empty() {
             return None;
         }
-        self.greeted = Some(now);
+        self.last_handshake = Some(now);
         Some(Handshake { teammates })
     }
 }
 
 /// A walking robot's step: ten handshakes fit into the lease for which a booting robot listens, so that at 30
 /// % loss one in 10^5 starts without knowing a teammate.
-const SHAKE_HANDS_EVERY: Duration = Duration::millis(40);
+const HANDSHAKE_PERIOD: Duration = Duration::millis(40);
 
 #[cfg(test)]
 mod tests {
@@ -109,41 +109,41 @@ mod tests {
         RobotId::new(n).unwrap()
     }
 
-    fn greeted(peer_table: &mut PeerTable, ms: u64) -> heapless::Vec<(u8, u32, Bond), 8> {
+    fn handshakes(peer_table: &mut PeerTable, ms: u64) -> heapless::Vec<(u8, u32, Bond), 8> {
         let handshake = peer_table.poll(Instant(ms * 1000));
         let teammates = handshake.iter().flat_map(|handshake| &handshake.teammates);
         teammates.map(|teammate| (teammate.who.number(), teammate.boot_epoch, teammate.bond)).collect()
     }
 
     #[test]
-    fn a_new_life_is_greeted_at_once_and_again_every_40_ms_while_it_speaks_and_does_not_answer() {
+    fn a_new_boot_epoch_gets_a_handshake_at_once_and_every_40_ms_until_answered() {
         let mut all = PeerTable::default();
         let mut at: heapless::Vec<u64, 8> = heapless::Vec::new();
         for ms in (0..300).step_by(10) {
             all.receive(robot(3), 7);
-            if !greeted(&mut all, ms).is_empty() {
+            if !handshakes(&mut all, ms).is_empty() {
                 at.push(ms).unwrap();
             }
         }
         assert_eq!(at[..], [0, 40, 80, 120, 160, 200, 240, 280]);
         // Silent: no handshake is due any more.
-        assert!(greeted(&mut all, 400).len() == 1 && greeted(&mut all, 500).is_empty());
+        assert!(handshakes(&mut all, 400).len() == 1 && handshakes(&mut all, 500).is_empty());
     }
 
     #[test]
-    fn two_shake_hands_each_other_until_both_know_and_then_cease() {
+    fn two_robots_exchange_handshakes_until_both_know_and_then_cease() {
         let (mut a, mut b) = (PeerTable::default(), PeerTable::default());
         let mut bonds = heapless::Vec::<Bond, 16>::new();
         for round in 0..20 {
             // Both send all the time; a's boot epoch is 5, b's 9.
             a.receive(robot(2), 9);
             b.receive(robot(1), 5);
-            for handshake in greeted(&mut a, round * 100) {
+            for handshake in handshakes(&mut a, round * 100) {
                 assert_eq!((handshake.0, handshake.1), (2, 9));
                 b.believe(robot(1), 5, handshake.2);
                 bonds.push(handshake.2).unwrap();
             }
-            for handshake in greeted(&mut b, round * 100) {
+            for handshake in handshakes(&mut b, round * 100) {
                 assert_eq!((handshake.0, handshake.1), (1, 5));
                 a.believe(robot(2), 9, handshake.2);
                 bonds.push(handshake.2).unwrap();
@@ -153,15 +153,15 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_of_an_earlier_life_changes_nothing() {
+    fn a_recording_of_an_earlier_boot_epoch_changes_nothing() {
         let mut all = PeerTable::default();
         all.receive(robot(2), 9);
         all.believe(robot(2), 9, Bond::Mutual);
-        assert_eq!(greeted(&mut all, 0)[..], [(2, 9, Bond::Mutual)]);
+        assert_eq!(handshakes(&mut all, 0)[..], [(2, 9, Bond::Mutual)]);
         all.receive(robot(2), 8);
         all.believe(robot(2), 8, Bond::Received);
         all.receive(robot(2), 9);
-        assert!(greeted(&mut all, 1_000).is_empty());
+        assert!(handshakes(&mut all, 1_000).is_empty());
     }
 
     #[test]
@@ -170,7 +170,7 @@ mod tests {
         let mut seen = [0; RobotId::COUNT];
         for round in 0..3 {
             RobotId::all().skip(1).for_each(|teammate| all.receive(teammate, 1));
-            for (who, ..) in greeted(&mut all, round * 100) {
+            for (who, ..) in handshakes(&mut all, round * 100) {
                 seen[usize::from(who)] += 1;
             }
         }

@@ -7,8 +7,6 @@
 //! flash, is none. A robot without a page, or with keys that are public, is not commanded by any host
 //! ([`read`]).
 
-use core::fmt;
-
 use rules::League;
 
 use crate::key::{Key, RobotKeys};
@@ -17,8 +15,8 @@ use crate::{RobotId, TeamId};
 /// Bytes of a page; the remainder of a flash sector stays empty.
 pub const PAGE_LEN: usize = 64;
 /// Bytes of a page that are used.
-const USED: usize = CHECKED + 8;
-const CHECKED: usize = 40;
+const USED_LEN: usize = CHECKED_LEN + 8;
+const CHECKED_LEN: usize = 40;
 const MAGIC: [u8; 4] = *b"1-2K";
 /// Version of the page; version 1 held the team's key.
 const VERSION: u8 = 2;
@@ -36,41 +34,24 @@ pub struct Provision {
     pub keys: RobotKeys,
 }
 
-/// Why a robot's identity cannot be read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reason why a robot's identity cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProvisionError {
     /// Never written, or foreign content.
+    #[error("the robot has no key; write one with `onetwo firmware provision`")]
     Empty,
     /// Written for another version of the firmware.
+    #[error(
+        "its page has version {0}, this firmware reads {VERSION}; write it again with `onetwo firmware provision`"
+    )]
     Version(u8),
     /// Written partly, or damaged.
+    #[error("its page is damaged; write it again with `onetwo firmware provision`")]
     Damaged,
     /// The keys are derived from the team key of zeros, which is public.
+    #[error("its team key is all zeros, which is public; give the team a key of its own")]
     OpenKey,
 }
-
-impl fmt::Display for ProvisionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => f.write_str("the robot has no key; write one with `onetwo firmware provision`"),
-            Self::Version(version) => {
-                write!(
-                    f,
-                    "its page has version {version}, this firmware reads {VERSION}; write it again with \
-                     `onetwo firmware provision`"
-                )
-            }
-            Self::Damaged => {
-                f.write_str("its page is damaged; write it again with `onetwo firmware provision`")
-            }
-            Self::OpenKey => {
-                f.write_str("its team key is all zeros, which is public; give the team a key of its own")
-            }
-        }
-    }
-}
-
-impl core::error::Error for ProvisionError {}
 
 /// The page for a robot.
 pub fn page(who: &Provision) -> [u8; PAGE_LEN] {
@@ -79,13 +60,13 @@ pub fn page(who: &Provision) -> [u8; PAGE_LEN] {
     let fields = MAGIC.iter().chain(&head).chain(&who.keys.host.0).chain(&who.keys.team.0);
     page.iter_mut().zip(fields).for_each(|(to, from)| *to = *from);
     let check = check(&page, &who.keys.host);
-    page.iter_mut().skip(CHECKED).zip(check).for_each(|(to, from)| *to = from);
+    page.iter_mut().skip(CHECKED_LEN).zip(check).for_each(|(to, from)| *to = from);
     page
 }
 
 /// Reads a page. Public keys are refused unless `open` marks a firmware for trials.
 pub fn read(page: &[u8], open: bool) -> Result<Provision, ProvisionError> {
-    let used: &[u8; USED] = page.first_chunk().ok_or(ProvisionError::Empty)?;
+    let used: &[u8; USED_LEN] = page.first_chunk().ok_or(ProvisionError::Empty)?;
     let [m0, m1, m2, m3, version, robot, team, league, rest @ ..] = *used;
     if [m0, m1, m2, m3] != MAGIC {
         return Err(ProvisionError::Empty);
@@ -108,7 +89,7 @@ pub fn read(page: &[u8], open: bool) -> Result<Provision, ProvisionError> {
 }
 
 fn check(page: &[u8], key: &Key) -> [u8; 8] {
-    key.tag(page.get(..CHECKED).unwrap_or_default()).to_le_bytes()
+    key.tag(page.get(..CHECKED_LEN).unwrap_or_default()).to_le_bytes()
 }
 
 fn league_number(league: League) -> u8 {
@@ -129,16 +110,16 @@ mod tests {
     }
 
     #[test]
-    fn what_was_written_is_read() {
-        for league in LEAGUES {
+    fn pages_are_read_as_written() {
+        for league in League::ALL {
             assert_eq!(read(&page(&who(league)), false), Ok(who(league)));
         }
         assert_eq!(&page(&who(League::DivisionB))[..8], [0x31, 0x2d, 0x32, 0x4b, 2, 7, 2, 2]);
-        assert!(page(&who(League::DivisionB))[USED..].iter().all(|byte| *byte == 0xff));
+        assert!(page(&who(League::DivisionB))[USED_LEN..].iter().all(|byte| *byte == 0xff));
     }
 
     #[test]
-    fn the_team_key_is_not_in_the_page_and_a_page_of_the_version_that_held_it_is_refused() {
+    fn the_page_lacks_the_team_key_and_the_version_that_held_it_is_refused() {
         let key: [u8; 16] = core::array::from_fn(|n| 3 * n as u8 + 1);
         let mut page = page(&who(League::DivisionB));
         assert!(!page.windows(16).any(|bytes| bytes == key));
@@ -151,7 +132,7 @@ mod tests {
         assert_eq!(read(&[0xff; PAGE_LEN], false), Err(ProvisionError::Empty));
         assert_eq!(read(&[0; 3], false), Err(ProvisionError::Empty));
         let whole = page(&who(League::DivisionB));
-        for bit in 0..8 * USED {
+        for bit in 0..8 * USED_LEN {
             let mut page = whole;
             page[bit / 8] ^= 1 << (bit % 8);
             assert!(read(&page, true).is_err(), "bit {bit}");

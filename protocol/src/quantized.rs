@@ -30,7 +30,7 @@ pub fn whole_mm(metres: f32) -> i32 {
     math::round_to_i32(metres * 1000.0)
 }
 
-/// As [`whole_mm`], for the wire: saturates at ±32.767 m.
+/// Rounds as [`whole_mm`] does, for the wire: saturates at ±32.767 m.
 pub fn to_mm(metres: f32) -> i16 {
     saturate(whole_mm(metres))
 }
@@ -79,14 +79,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_millimetre_survives_the_way_there_and_back() {
+    fn millimetres_survive_quantisation() {
         for mm in [-32_767_i16, -2700, -1, 0, 1, 1799, 32_767] {
             assert_eq!(to_mm(from_mm(i32::from(mm))), mm);
         }
     }
 
     #[test]
-    fn what_does_not_fit_saturates() {
+    fn values_beyond_the_wires_range_saturate() {
         assert_eq!(to_mm(1e9), i16::MAX);
         assert_eq!(to_mm(f32::NAN), 0);
         assert_eq!(length_to_mm(-1.0), 0);

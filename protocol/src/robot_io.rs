@@ -38,25 +38,25 @@ pub struct SensorFrame {
     pub odometry: Twist<Body>,
     /// State of the body.
     pub health: Health,
-    /// What its own camera sees, relative to the body.
+    /// Frame of the robot's own camera, relative to the body.
     pub camera: Option<CameraFrame>,
 }
 
-/// What a walking robot's camera sees in one frame, relative to the body.
+/// Objects that a walking robot's camera sees in one frame, relative to the body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CameraFrame {
     /// Landmarks of the field (`rules::LANDMARKS`).
     pub landmarks: heapless::Vec<LandmarkSight, LANDMARKS_SEEN_MAX>,
-    /// The ball.
+    /// The ball, if it is seen.
     pub ball: Option<Sight>,
 }
 
-/// A detected landmark.
+/// Landmark that the camera has detected.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LandmarkSight {
-    /// Its index in `rules::LANDMARKS`: colours tell them apart.
+    /// Index in `rules::LANDMARKS`: their colours are all different.
     pub landmark: u8,
-    /// Where it is.
+    /// Position of the landmark.
     pub sight: Sight,
 }
 
@@ -65,7 +65,7 @@ pub struct LandmarkSight {
 pub struct Sight {
     /// Distance along the ground, mm.
     range: u16,
-    /// To the left of the heading, 0.1 mrad.
+    /// Angle to the left of the heading, 0.1 mrad.
     bearing: i16,
 }
 

@@ -30,18 +30,18 @@ pub const BRING_UP: u8 = 5;
 /// A message of a robot. Odd numbers are for the host; 5 is no variant: it is [`BRING_UP`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TeamMessage {
-    /// To all: the sender's whole state.
+    /// Whole state of the sender, to all.
     Beacon(Beacon),
-    /// To the host: state of the sender's body and link.
+    /// State of the sender's body and link, to the host.
     Telemetry(Telemetry),
     /// Handshake to teammates that do not know yet that the sender is live.
     Handshake(Handshake),
-    /// To the host: a part of the problem that the sender decided on.
+    /// Part of the problem that the sender decided on, to the host.
     Decision(DecisionPart),
 }
 
 impl TeamMessage {
-    /// Whether a payload is meant for the host alone, by its first byte: the variant's number, or
+    /// Returns whether a payload is meant for the host alone, by its first byte: the variant's number, or
     /// [`BRING_UP`]. 7 is free: with it this is one comparison, as it was with 1 and 3.
     pub(crate) const fn is_for_host(payload: &[u8]) -> bool {
         matches!(*payload, [1 | 3 | BRING_UP | 7, ..])
@@ -78,7 +78,7 @@ pub enum Bond {
     Received,
     /// The sender trusts the other.
     Believed,
-    /// It also knows that the other trusts it: no answer is needed.
+    /// Known, and known to be trusted: no answer is needed.
     Mutual,
 }
 
@@ -96,9 +96,9 @@ pub struct Beacon {
     pub case_base: u32,
     /// The newest cycle it knows.
     pub cycle: Option<CycleState>,
-    /// Its progress in that cycle.
+    /// Progress of the sender in that cycle.
     pub progress: Progress,
-    /// Its role while it plays no case.
+    /// Role of the sender while it plays no case.
     pub role: Role,
 }
 
@@ -110,7 +110,7 @@ pub struct BallReport {
     /// Distance from the sender's centre, mm: compared by the elector.
     #[serde(with = "postcard::fixint::le")]
     pub distance: u16,
-    /// How well it is known, and how it moves.
+    /// Certainty of the position, and motion of the ball.
     pub quality: BallQuality,
 }
 
@@ -121,7 +121,7 @@ pub struct BallReport {
 pub struct BallQuality(#[serde(with = "postcard::fixint::le")] u32);
 
 impl BallQuality {
-    /// Of a standard deviation in m, an age, and a velocity in m/s.
+    /// Quantises a standard deviation in m, an age, and a velocity in m/s.
     pub fn new(sigma: f32, age: Duration, velocity: Vector<Field>) -> Self {
         let sigma = math::round_to_i32(sigma * 100.0).clamp(0, 255) as u8;
         let age = (age.0 / BALL_AGE_STEP.0).min(255) as u8;
@@ -144,7 +144,7 @@ impl BallQuality {
         Duration((self.0 >> 8 & 0xff) as u64 * BALL_AGE_STEP.0)
     }
 
-    /// Velocity, m/s.
+    /// Velocity of the ball, m/s.
     pub fn velocity(self) -> Vector<Field> {
         let [_, _, x, y] = self.0.to_le_bytes().map(|byte| f32::from(byte as i8) * BALL_SPEED_STEP);
         Vector::new(x, y)
@@ -166,7 +166,7 @@ impl Status {
     pub const AVAILABLE: Self = Self(1);
     /// Able to retrieve cases (paper §4.1: one of the k).
     pub const RETRIEVER: Self = Self(2);
-    /// It holds the ball: no other robot shall take it.
+    /// The robot holds the ball: no other robot shall take it.
     pub const HOLDS_BALL: Self = Self(4);
 
     /// Union of both sets.
@@ -180,7 +180,7 @@ impl Status {
         self.0 & other.0 == other.0
     }
 
-    /// With the rule that chose the last shot of the sender's case (bits 3 to 5).
+    /// Adds the rule that chose the last shot of the sender's case (bits 3 to 5).
     #[must_use]
     pub const fn with_shot(self, rule: ShotRule) -> Self {
         Self(self.0 & !(7 << SHOT_SHIFT) | (rule as u8) << SHOT_SHIFT)
@@ -204,11 +204,11 @@ impl Status {
 /// First bit of the rule of a shot in a [`Status`].
 const SHOT_SHIFT: u8 = 3;
 
-/// Why the holder of a case's ball does what it does with a shot at goal, by the number on the air.
+/// Rule by which the holder of a case's ball shoots at goal or does not, by the number on the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum ShotRule {
-    /// It has not come to a shot.
+    /// No shot was due yet.
     #[default]
     NoShot = 0,
     /// The leg that retrieval checked is kicked.
@@ -219,7 +219,7 @@ pub enum ShotRule {
     Gap = 3,
     /// The ball is pushed on towards the goal: worth more than a shot from afar.
     PushOn = 4,
-    /// Its time was up.
+    /// The time for the shot was up.
     OutOfTime = 5,
     /// An opponent comes for the ball before the case's action is done: shot instead of it.
     Pressed = 6,
@@ -237,8 +237,8 @@ pub struct CycleState {
 }
 
 impl CycleState {
-    /// Whether this is more than `known`: a later cycle, or more of the same one. A total order, so that
-    /// robots that receive the same messages in any order end up knowing the same.
+    /// Returns whether this is more than `known`: a later cycle, or more of the same one. A total order, so
+    /// that robots that receive the same messages in any order end up knowing the same.
     pub fn is_newer_than(&self, known: Option<&Self>) -> bool {
         known.is_none_or(|known| self > known)
     }
@@ -289,7 +289,7 @@ impl Play {
 pub enum Closure {
     /// Every robot involved reported the end of its actions.
     Finished,
-    /// There was no case; the waiting time before the next try is over.
+    /// No case was found, and the waiting time before the next try is over.
     NoCase,
     /// A robot involved stopped it.
     Aborted {
@@ -300,7 +300,7 @@ pub enum Closure {
     },
 }
 
-/// Why a cycle was stopped (paper §4.2; docs/architecture.md §5.3).
+/// Reason why a cycle was stopped (paper §4.2; docs/architecture.md §5.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum AbortReason {
     /// Before the first touch: the ball left the case's scope.
@@ -315,7 +315,7 @@ pub enum AbortReason {
     OpponentOnBall,
     /// After the first touch: the ball stopped where no robot of the case expects it.
     BallAtRest,
-    /// It took longer than 1.5 × the expected duration + 2 s.
+    /// The cycle took longer than 1.5 × the expected duration + 2 s.
     Timeout,
     /// The coordinator stayed silent about its decision.
     NoDecision,
@@ -335,7 +335,7 @@ pub enum Progress {
     Idle,
     /// Walking to its adapted position.
     Adapt {
-        /// Whether it has arrived.
+        /// True once the robot has arrived.
         arrived: bool,
     },
     /// At its actions, one after another.
@@ -345,7 +345,7 @@ pub enum Progress {
     },
     /// Waiting for the end of the cycle.
     WaitEnd {
-        /// Whether it was involved and has finished its actions.
+        /// True once an involved robot has finished its actions.
         finished: bool,
     },
 }

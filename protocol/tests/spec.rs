@@ -128,11 +128,11 @@ fn worlds() -> [(&'static str, HostMessage); 2] {
 fn commands() -> [(&'static str, Phase<Side>, RuleRole, Directive); 11] {
     use Directive::{Block, Dribble, Gameplay, GetBall, GoTo, Kick, Pass, PlaceBall, Receive, Stand};
     let (run, ours, player) = (Phase::Run, Side::Ours, RuleRole::Player);
-    let (interception_point, goal) = (point(1000, 900), point(4500, 0));
+    let (pass_point, goal) = (point(1000, 900), point(4500, 0));
     let hint = Hint {
         case: CaseId(300),
         robots: [robot(3), robot(5)].into_iter().collect(),
-        pass_point: Some(interception_point),
+        pass_point: Some(pass_point),
     };
     [
         ("stand", Phase::Halt, player, Stand),
@@ -143,9 +143,9 @@ fn commands() -> [(&'static str, Phase<Side>, RuleRole, Directive); 11] {
             "pass",
             run,
             player,
-            Pass { at: interception_point, receiver: robot(4), kick: KickOrder::Chip(100), ready: false },
+            Pass { at: pass_point, receiver: robot(4), kick: KickOrder::Chip(100), ready: false },
         ),
-        ("receive", run, player, Receive { at: interception_point, then: Some(goal) }),
+        ("receive", run, player, Receive { at: pass_point, then: Some(goal) }),
         ("dribble", run, player, Dribble { pose: pose(0, -1, -3142) }),
         ("block", Phase::Stop, RuleRole::Keeper, Block { from: point(-4400, 400), to: point(-4400, -400) }),
         ("place-ball", Phase::BallPlacement(ours), RuleRole::Kicker, PlaceBall { at: point(-3000, 2000) }),

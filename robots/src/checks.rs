@@ -67,7 +67,7 @@ impl List<'_> {
             let message = format!("body.mouth is {mouth} m, wider than half the front, {half:.4} m");
             self.add(Severity::Error, "body.mouth", message, "give half the roller's width");
         }
-        if front < radius * FRONT_SHARE {
+        if front < radius * FRONT_SHARE_MIN {
             let message = format!("body.front is {front} m, less than a third of body.radius");
             self.add(Severity::Error, "body.front", message, "measure from the centre of the hull");
         }
@@ -112,12 +112,12 @@ impl List<'_> {
         let counts =
             4.0 * self.of.number("wheels.encoder_lines") * self.of.number("wheels.encoder_gear").abs();
         let around = 2.0 * std::f32::consts::PI * self.of.number("wheels.radius");
-        let a_step = counts / around * self.of.number("wheels.free_speed") * 1e-3;
-        if a_step > WRAPS {
+        let per_ms = counts / around * self.of.number("wheels.free_speed") * 1e-3;
+        if per_ms > COUNTS_PER_MS_MAX {
             let message =
-                format!("wheels.encoder_lines: {a_step:.0} counts a millisecond wrap the counter of 16 bits");
+                format!("wheels.encoder_lines: {per_ms:.0} counts a millisecond wrap the counter of 16 bits");
             self.add(Severity::Error, "wheels.encoder_lines", message, "check lines, gear and radius");
-        } else if counts / around < COARSE {
+        } else if counts / around < COUNTS_PER_METRE_MIN {
             let message = format!("wheels.encoder_lines: {:.0} counts a metre are few", counts / around);
             self.add(Severity::Warning, "wheels.encoder_lines", message, "slow motion will be rough");
         }
@@ -188,11 +188,11 @@ impl List<'_> {
         self.below("battery.low", "battery.full", "give the voltages of the whole battery");
         let cells = self.of.number("battery.cells");
         let [low, full] = [self.of.number("battery.low") / cells, self.of.number("battery.full") / cells];
-        if !(CELL_LOW..=CELL_FULL).contains(&low) {
+        if !(CELL_LOW..=CELL_NOMINAL).contains(&low) {
             let message = format!("battery.low is {low:.2} V a cell");
             self.add(Severity::Error, "battery.low", message, "lithium cells are empty at 3.0 to 3.7 V each");
         }
-        if !(CELL_CHARGED..=CELL_MOST).contains(&full) {
+        if !(CELL_CHARGED..=CELL_CHARGED_MAX).contains(&full) {
             let message = format!("battery.full is {full:.2} V a cell");
             self.add(
                 Severity::Error,
@@ -209,26 +209,26 @@ fn last_speed(of: &Description, path: &str) -> f32 {
     of.pulses(path).last().map_or(0.0, |(speed, _)| *speed)
 }
 
-/// A front nearer to the centre is no front (the simulator's limit).
-const FRONT_SHARE: f32 = 0.31;
-/// Rims' speed over the body's in the strongest direction against the weakest: more is a direction that a
-/// robot cannot be controlled in.
+/// Smallest distance of the flat front from the centre, share of the radius (the simulator's limit).
+const FRONT_SHARE_MIN: f32 = 0.31;
+/// Largest condition of the wheels' matrix (rims' speed over the body's in the strongest direction against the
+/// weakest): beyond it there is a direction in which a robot cannot be controlled.
 const CONDITION_MAX: f64 = 8.0;
-/// Teams' robots lie between 1.4 and 2.
+/// Condition above which one direction is driven weakly; teams' robots lie between 1.4 and 2.
 const CONDITION_GOOD: f64 = 3.0;
-/// A gear below it is none.
+/// Smallest gear between wheel and encoder.
 const GEAR_MIN: f32 = 1e-3;
-/// Counts of a millisecond that a counter of 16 bits surely tells: a quarter of it.
-const WRAPS: f32 = 16_384.0;
-/// Counts a metre below which a control step of 1 ms at 1 m/s sees none or one.
-const COARSE: f32 = 2_000.0;
-/// What a kicker may give above its order.
+/// Largest number of counts in a millisecond: a quarter of a counter of 16 bits, so that no wrap is missed.
+const COUNTS_PER_MS_MAX: f32 = 16_384.0;
+/// Smallest number of counts a metre: with fewer a control step of 1 ms at 1 m/s sees none or one.
+const COUNTS_PER_METRE_MIN: f32 = 2_000.0;
+/// Factor by which a kicker may kick above its order.
 const KICK_MARGIN: f32 = 1.1;
 /// V of a lithium cell: lowest and highest end of a discharge, and of a charge.
 const CELL_LOW: f32 = 3.0;
-const CELL_FULL: f32 = 3.7;
+const CELL_NOMINAL: f32 = 3.7;
 const CELL_CHARGED: f32 = 4.1;
-const CELL_MOST: f32 = 4.4;
+const CELL_CHARGED_MAX: f32 = 4.4;
 
 #[cfg(test)]
 mod tests {

@@ -14,9 +14,9 @@ use crate::keys::{KEYS, Key, Kind};
 pub enum Value {
     /// A number in the key's unit.
     Number(f32),
-    /// A whole number.
+    /// A whole number, 0 or more.
     Whole(u32),
-    /// Four angles, degrees.
+    /// Angles of the four wheels, degrees.
     Angles([f32; 4]),
     /// Ball speed, m/s, and pulse, µs.
     Pulses(Vec<(f32, u64)>),
@@ -28,7 +28,7 @@ pub enum Value {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     file: String,
-    /// In the order of [`KEYS`], with the line.
+    /// Values in the order of [`KEYS`], each with its line.
     values: Vec<(Value, u32)>,
     warnings: Vec<Finding>,
 }
@@ -51,12 +51,12 @@ impl Description {
         Self { warnings, ..self }
     }
 
-    /// Its `name`.
+    /// Value of the key `name`.
     pub fn name(&self) -> &str {
         self.text("name")
     }
 
-    /// Doubts about it.
+    /// Findings that do not refuse it.
     pub fn warnings(&self) -> &[Finding] {
         &self.warnings
     }
@@ -103,7 +103,7 @@ impl Description {
         if let Value::Pulses(pulses) = self.value(path) { pulses } else { &[] }
     }
 
-    /// Where the wheels stand, degrees.
+    /// Angles of the wheels, degrees.
     pub fn wheel_angles(&self) -> [f32; 4] {
         if let Value::Angles(angles) = self.value("wheels.degrees") { *angles } else { [f32::NAN; 4] }
     }
@@ -216,7 +216,7 @@ impl Reader<'_> {
     }
 }
 
-/// Whether `table` is `path`, or lies within it.
+/// Returns whether `table` is `path`, or lies within it.
 fn is_within(table: &str, path: &str) -> bool {
     table.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
@@ -297,7 +297,7 @@ fn whole(value: &DeValue<'_>) -> Option<u64> {
     u64::from_str_radix(&number.as_str().replace('_', ""), number.radix()).ok()
 }
 
-/// Whether the value has the kind's type, so that only its range is wrong.
+/// Returns whether the value has the kind's type, so that only its range is wrong.
 fn fits(value: &DeValue<'_>, kind: Kind) -> bool {
     match kind {
         Kind::Number(..) => matches!(value, DeValue::Float(_) | DeValue::Integer(_)),
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_type_a_wrong_list_and_broken_syntax_are_told_apart() {
+    fn a_wrong_type_a_wrong_list_and_broken_syntax_give_different_findings() {
         assert!(
             refused("mass = 2.5 ", "mass = \"2.5\" ")
                 .contains("error[wrong-type]: body.mass is the text \"2.5\"")

@@ -12,15 +12,15 @@ const MESSAGE_LEN: usize = 400;
 pub struct Finding {
     /// Code of its kind.
     pub code: &'static str,
-    /// Whether the description is refused.
+    /// Severity: an error refuses the description.
     pub severity: Severity,
-    /// The file.
+    /// Path of the file, as given.
     pub file: String,
-    /// Its line, from 1.
+    /// Line in the file, from 1.
     pub line: u32,
-    /// What is wrong, one sentence with the key.
+    /// Description of the fault, one sentence with the key.
     pub message: String,
-    /// How to mend it.
+    /// Advice how to fix it.
     pub hint: String,
 }
 

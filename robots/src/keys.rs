@@ -8,13 +8,13 @@ pub struct Key {
     pub path: &'static str,
     /// Unit of its numbers; empty for none.
     pub unit: &'static str,
-    /// What its value may be.
+    /// Type and range of the value.
     pub kind: Kind,
-    /// What it means, and who reads it.
+    /// Meaning of the value, and its readers.
     pub meaning: &'static str,
 }
 
-/// What a value may be.
+/// Type and range of a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// A number from the first to the second.
@@ -218,12 +218,12 @@ impl Key {
         self.path.rsplit_once('.').map_or("", |(table, _)| table)
     }
 
-    /// Its name within the table.
+    /// Name within the table.
     pub fn name(&self) -> &'static str {
         self.path.rsplit_once('.').map_or(self.path, |(_, name)| name)
     }
 
-    /// What may be given, as text with the unit.
+    /// Type and range as text, with the unit.
     pub fn allowed(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
         match self.kind {

@@ -1,6 +1,5 @@
 //! `place`: the description that a build is for, by an environment variable.
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use crate::built_in;
@@ -16,39 +15,25 @@ const LEN_MAX: u64 = 1 << 20;
 pub struct Chosen {
     /// A built-in name or a path, for findings and for [`VARIABLE`].
     pub source: String,
-    /// Its text.
+    /// Text of the description, TOML.
     pub text: String,
     /// The file that was read; none for a built-in one.
     pub file: Option<PathBuf>,
 }
 
-/// Why there is no text.
-#[derive(Debug)]
+/// Error of a description that cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the robot's description {} cannot be read: {error}; give a file, or one of {}",
+    foreign::excerpt(&file.to_string_lossy(), 300),
+    crate::BUILT_IN.map(|(name, _)| name).join(", ")
+)]
 pub struct Unreadable {
-    /// The file.
+    /// File that was to be read.
     file: PathBuf,
     /// Error of the attempt.
+    #[source]
     error: std::io::Error,
-}
-
-impl fmt::Display for Unreadable {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<_> = crate::BUILT_IN.iter().map(|(name, _)| *name).collect();
-        let file = self.file.to_string_lossy();
-        write!(
-            f,
-            "the robot's description {} cannot be read: {}; give a file, or one of {}",
-            foreign::excerpt(&file, 300),
-            self.error,
-            names.join(", ")
-        )
-    }
-}
-
-impl std::error::Error for Unreadable {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        Some(&self.error)
-    }
 }
 
 /// The description that `asked` names: a built-in name, or a file; relative paths start at `root`.

@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn the_usual_angles_agree_with_a_calculation_by_hand() {
+    fn our_wheel_angles_agree_with_a_calculation_by_hand() {
         // Σ sin² = 1.5 + 1, Σ cos² = 0.5 + 1, Σ cos = 1 − √2, Σ sin and Σ sin·cos 0: the block of side and
         // turn has the trace 5.5 and the determinant 6 − (1 − √2)².
         let determinant = 6.0 - (1.0 - 2.0_f64.sqrt()).powi(2);

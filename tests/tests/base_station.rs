@@ -80,7 +80,7 @@ impl Player {
         let brain = Station::with_keys(Instant(0), &config, case_library::division_b(), KEY.of_robot(id));
         let chip = air.chip();
         let wires = (chip.spi(), chip.chip_enable(), chip.pause());
-        let robot = Robot::start(Instant(0), CHANNEL, id, wires.0, wires.1, wires.2).expect("the model");
+        let robot = Robot::start(Instant(0), CHANNEL, id, wires).expect("the model");
         let radio = Served::new(robot, chip);
         Self { id, brain, radio, guard: Guard::new(id, 7, 0), frames: 0, believed: 0, obeyed: 0 }
     }

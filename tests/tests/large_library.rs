@@ -61,7 +61,7 @@ fn a_library_of_2_500_files_loads_and_retrieves_as_the_plain_scan() {
     let directory = std::env::temp_dir().join(format!("large-library-{}", std::process::id()));
     RandomLibrary::new(11, 2_500).write(&directory).expect("written");
     let mut reported = Vec::new();
-    let loaded = case_tools::load_telling(&directory, |done, all| reported.push((done, all)));
+    let loaded = case_tools::load_with_progress(&directory, |done, all| reported.push((done, all)));
     std::fs::remove_dir_all(&directory).expect("removed");
     let library = loaded.expect("sound");
     assert!(

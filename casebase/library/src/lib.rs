@@ -29,7 +29,7 @@ pub fn division_b() -> CaseBase<'static> {
 /// A built-in league. Lists have one entry per authored case, in the order of ids.
 #[derive(Clone, Copy, Debug)]
 pub struct League {
-    /// Its name: that of its directory.
+    /// Name of the league's directory.
     pub name: &'static str,
     /// The table, at a multiple of 4 bytes.
     pub table: &'static [u8],

@@ -6,12 +6,10 @@
 //! with it, and gives the robots at run time the actions that hand the ball over. Positions are relative to
 //! the ball's start position, mm, axes of the field; the attacked goal is a fixed point of the field.
 
-use core::fmt;
-
 use geometry::math;
 
 use crate::action::{Action, CaseKick, CaseRobot, FieldMm, KickAim, KickId, Pass, TEAMMATES_MAX};
-use crate::path::LegKind;
+use crate::leg::LegKind;
 use crate::table::CaseBase;
 use crate::{GoalEnd, PointMm};
 
@@ -78,11 +76,17 @@ pub fn plan_simulation(
 pub struct Spot {
     /// x and y, axes of the field.
     pub at: [f32; 2],
-    /// Whether it is a fixed point of the field; else it is relative to the ball's start position.
+    /// True for a fixed point of the field; else the position is relative to the ball's start.
     pub on_field: bool,
 }
 
 impl Spot {
+    /// The position in the field frame, mm, for a ball that starts at `ball`.
+    pub fn in_field(&self, ball: PointMm) -> [f32; 2] {
+        let [x, y] = if self.on_field { [0.0; 2] } else { ball.to_f32() };
+        [self.at[0] + x, self.at[1] + y]
+    }
+
     fn relative(displacement: PointMm) -> Self {
         Self { at: displacement.to_f32(), on_field: false }
     }
@@ -91,7 +95,7 @@ impl Spot {
 /// An event of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanStep {
-    /// It runs along a leg.
+    /// The ball runs along a leg.
     Leg {
         /// The case robot that passes or kicks.
         robot: CaseRobot,
@@ -103,7 +107,7 @@ pub enum PlanStep {
         to: Spot,
         /// r_min and r_max, mm.
         radii: [i32; 2],
-        /// Whether the leg is a pass or a kick.
+        /// Action that sends the ball: a pass or a kick.
         kind: LegKind,
         /// The `dribble_to` that carried it to `from` after the leg before.
         carried_by: Option<(CaseRobot, usize)>,
@@ -133,40 +137,29 @@ pub struct HandOver {
     pub from: (CaseRobot, usize),
     /// The `receive_ball` or `get_ball`.
     pub to: (CaseRobot, usize),
-    /// By a pass, else by a kick.
+    /// True for a pass, false for a kick.
     pub by_pass: bool,
 }
 
-/// Why gameplays cannot be simulated, with the robot and its action (from 0).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reason why gameplays cannot be simulated, with the robot and its action (from 0).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// No robot's first action is `get_ball`.
+    #[error("no robot begins with get_ball")]
     NoGetter,
     /// A robot without the ball should dribble, pass or kick it.
+    #[error("{0} does not hold the ball at its action {n}", n = .1 + 1)]
     NotHolding(CaseRobot, usize),
     /// The robot that is passed to never comes to receive this pass.
+    #[error("{0} passes to a robot that does not receive it at its action {n}", n = .1 + 1)]
     PassUnanswered(CaseRobot, usize),
     /// The pass for which a robot waits is never played.
+    #[error("{0} waits for a pass that no robot plays at its action {n}", n = .1 + 1)]
     ReceiveUnanswered(CaseRobot, usize),
     /// The league has no such kick kind.
+    #[error("{0} uses a kick the league does not define at its action {n}", n = .1 + 1)]
     UnknownKick(CaseRobot, usize),
 }
-
-impl fmt::Display for PlanError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (what, robot, action) = match self {
-            Self::NoGetter => return f.write_str("no robot begins with get_ball"),
-            Self::NotHolding(robot, action) => ("does not hold the ball", robot, action),
-            Self::PassUnanswered(robot, action) => {
-                ("passes to a robot that does not receive it", robot, action)
-            }
-            Self::ReceiveUnanswered(robot, action) => ("waits for a pass that no robot plays", robot, action),
-            Self::UnknownKick(robot, action) => ("uses a kick the league does not define", robot, action),
-        };
-        write!(f, "{robot} {what} at its action {}", action + 1)
-    }
-}
-impl core::error::Error for PlanError {}
 
 /// The state of a simulation: each robot's progress in its list and position, and the ball's position.
 struct Walker<'s, S, K, F> {
@@ -234,16 +227,18 @@ impl<S: Script, K: Kicks, F: FnMut(PlanStep)> Walker<'_, S, K, F> {
 
     /// The lowest-numbered robot whose next ball action is `get_ball`, advanced to that action.
     fn chaser(&mut self, from: (CaseRobot, usize)) -> Option<CaseRobot> {
-        let chases = |robot: &CaseRobot| {
-            let rest = self.next[robot.index()]..;
-            let mut actions = rest.map_while(|index| self.script.action(*robot, index));
-            actions.find(|action| action.concerns_ball()) == Some(Action::GetBall)
-        };
-        let robot = CaseRobot::first(self.script.teammates()).find(chases)?;
+        let mut robots = CaseRobot::first(self.script.teammates());
+        let robot = robots.find(|robot| self.next_ball_action(*robot) == Some(Action::GetBall))?;
         self.walk_on(robot);
         let to = (robot, self.next[robot.index()]);
         (self.sink)(PlanStep::HandOver(HandOver { from, to, by_pass: false }));
         Some(robot)
+    }
+
+    /// The robot's next action that concerns the ball.
+    fn next_ball_action(&self, robot: CaseRobot) -> Option<Action> {
+        let mut actions = (self.next[robot.index()]..).map_while(|index| self.script.action(robot, index));
+        actions.find(|action| action.concerns_ball())
     }
 
     /// Advances a robot without the ball to its next ball action, and returns it.
@@ -268,7 +263,7 @@ impl<S: Script, K: Kicks, F: FnMut(PlanStep)> Walker<'_, S, K, F> {
         self.ball = to;
     }
 
-    /// Where a kick from the ball's position ends.
+    /// End of a kick from the ball's position.
     fn kick_end(&self, aim: KickAim) -> Spot {
         let sign = self.script.defending().attack_sign();
         match aim {

@@ -179,7 +179,7 @@ fn a_leg_after_a_kick_at_the_goal_begins_at_a_point_of_the_field() {
 }
 
 #[test]
-fn the_place_of_who_got_the_ball_is_the_ball_s() {
+fn a_robot_that_got_the_ball_stands_at_the_ball() {
     // tm1 gets the ball, passes, and receives it back where it got it.
     let case = written(&[
         ((0, 50), &[Action::GetBall, Action::PassBall(tm(2)), Action::ReceiveBall(tm(2))]),
@@ -189,7 +189,7 @@ fn the_place_of_who_got_the_ball_is_the_ball_s() {
 }
 
 #[test]
-fn what_cannot_be_walked_names_the_robot_and_its_action() {
+fn a_plan_that_cannot_be_simulated_names_robot_and_action() {
     let get: &[Action] = &[Action::GetBall];
     let cases: &[(&[Part<'_>], PlanError)] = &[
         (&[((0, 0), &[Action::Wait])], PlanError::NoGetter),
@@ -231,7 +231,7 @@ fn what_cannot_be_walked_names_the_robot_and_its_action() {
 }
 
 #[test]
-fn a_get_ball_that_no_kick_serves_is_reported() {
+fn a_get_ball_after_the_last_kick_is_never_reached() {
     let case = written(&[((0, 0), &[Action::GetBall]), ((0, 0), &[Action::Wait, Action::GetBall])]);
     assert_eq!(steps(&case).unwrap(), [PlanStep::NeverReached { robot: tm(2), action: 1 }]);
 }

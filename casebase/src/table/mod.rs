@@ -10,7 +10,7 @@
 //!
 //! [`CaseBase::from_bytes`] checks everything once, so that no later access can panic or leave the table.
 
-use protocol::CaseId;
+use geometry::GoalEnd;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 mod record_header;
@@ -19,9 +19,11 @@ mod validate;
 pub use record_header::{OpponentRecord, RawLeg, RecordHeader};
 pub use validate::TableError;
 
+use crate::PointMm;
 use crate::action::{CaseKick, FieldMm, KickAim, KickId, Pass, Primitive, TEAMMATES_MAX};
-use crate::case::Case;
 use crate::index::Grid;
+use crate::settings::SCOPE_EXPONENT;
+use crate::symmetry::Symmetry;
 
 /// A case base over a borrowed table. Cheap to copy: it contains only references.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +31,7 @@ pub struct CaseBase<'a> {
     bytes: &'a [u8],
     pub(crate) header: &'a Header,
     pub(crate) groups: &'a [Group],
-    pub(crate) gates: &'a [RecordHeader],
+    pub(crate) record_headers: &'a [RecordHeader],
     pub(crate) points: &'a [[i32; 2]],
     kicks: &'a [RawKick],
     pub(crate) cell_starts: &'a [u32],
@@ -53,12 +55,12 @@ impl<'a> CaseBase<'a> {
 
     /// Number of stored cases, four for each authored one.
     pub const fn len(&self) -> usize {
-        self.gates.len()
+        self.record_headers.len()
     }
 
-    /// Whether there is no case.
+    /// Returns whether there is no case.
     pub const fn is_empty(&self) -> bool {
-        self.gates.is_empty()
+        self.record_headers.is_empty()
     }
 
     /// Dimensions of the league's field, mm.
@@ -83,20 +85,29 @@ impl<'a> CaseBase<'a> {
         self.kicks.len()
     }
 
-    /// The stored case with this id; `None` if the table has no such case.
-    pub fn case(&self, id: CaseId) -> Option<Case<'a>> {
-        Case::new(*self, id)
-    }
-
-    /// Every stored case, lowest id first.
-    pub fn cases(&self) -> impl Iterator<Item = Case<'a>> + use<'a> {
-        let base = *self;
-        (0..base.len() as u32).filter_map(move |id| base.case(CaseId(id as u16)))
-    }
-
     /// The whole table as it lies in flash, header included.
     pub const fn bytes(&self) -> &'a [u8] {
         self.bytes
+    }
+
+    /// Every case under `goal` whose ball scope may contain `ball`: ids, with the bits to flip in them.
+    #[inline]
+    pub(crate) fn near(&self, [x, y]: [f32; 2], goal: GoalEnd) -> (&[u16], usize) {
+        let (x, other_goal) = match goal {
+            GoalEnd::Negative => (x, Symmetry::Identity),
+            GoalEnd::Positive => (-x, Symmetry::AcrossY),
+        };
+        let (y, other_side) = if y < 0.0 { (-y, Symmetry::AcrossX) } else { (y, Symmetry::Identity) };
+        let cell = self.header.grid.cell([x, y]);
+        let bounds = self.cell_starts.get(cell..).and_then(|starts| starts.first_chunk());
+        let list = bounds.and_then(|&[from, to]| self.cell_cases.get(from as usize..to as usize));
+        (list.unwrap_or(&[]), usize::from(other_goal.bits() | other_side.bits()))
+    }
+
+    /// Returns whether the index was built for scopes that end at this exponent.
+    #[inline]
+    pub(crate) fn index_serves(limit: f32) -> bool {
+        limit <= SCOPE_EXPONENT
     }
 
     /// Mean bytes of the table per stored case, index included.
@@ -112,7 +123,7 @@ impl Default for CaseBase<'_> {
             bytes: &[],
             header: &EMPTY_HEADER,
             groups: &[],
-            gates: &[],
+            record_headers: &[],
             points: &[],
             kicks: &[],
             cell_starts: &[],
@@ -177,6 +188,14 @@ pub struct Group {
     pub reserved: u8,
 }
 
+impl Group {
+    /// A point of copy `copy` by its number, mm, field frame; (0, 0) where there is none.
+    pub(crate) fn point(&self, points: &[[i32; 2]], copy: u16, index: u8) -> PointMm {
+        let points = part(points, self.points_at, self.points, copy);
+        points.get(usize::from(index)).map_or(PointMm::new(0, 0), |[x, y]| PointMm::new(*x, *y))
+    }
+}
+
 /// One action: its kind and its argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
@@ -219,7 +238,7 @@ pub struct RawKick {
 }
 
 impl RawKick {
-    /// As a table stores it.
+    /// Encodes a kick for the table.
     pub fn encode(kick: CaseKick) -> Self {
         let (degrees, length_or_offset, at_goal) = match kick.aim {
             KickAim::Heading { degrees, length_mm } => (degrees, length_mm, 0),

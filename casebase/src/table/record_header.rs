@@ -23,7 +23,7 @@ pub struct RecordHeader {
     pub opponents: u8,
     /// Number of legs of the ball path.
     pub legs: u8,
-    /// What its opponent scopes demand: [`Demands`].
+    /// Demands of the opponent scopes: bits of [`Demands`].
     pub demands: u8,
 }
 
@@ -40,7 +40,7 @@ pub struct OpponentRecord {
 }
 
 impl OpponentRecord {
-    /// Whether its scope, displaced by `moved`, contains a point relative to the ball, mm.
+    /// Returns whether the scope, displaced by `moved`, contains a point relative to the ball, mm.
     #[inline(always)]
     pub(crate) fn holds(&self, moved: [f32; 2], point: [f32; 2], limit: f32) -> bool {
         let centre = [f32::from(self.at[0]) + moved[0], f32::from(self.at[1]) + moved[1]];
@@ -55,7 +55,8 @@ impl OpponentRecord {
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct RawLeg {
-    /// Its end, mm: relative to the case's ball, or a point of the field where [`RawLeg::TO_FIELD`] is set.
+    /// End of the leg, mm: relative to the case's ball, or a point of the field where [`RawLeg::TO_FIELD`] is
+    /// set.
     pub to: [f32; 2],
     /// r_min and r_max, mm.
     pub radii: [f32; 2],
@@ -84,7 +85,7 @@ impl RecordHeader {
         gauss_exponent(ball[0] - self.ball[0], ball[1] - self.ball[1], inverse_x, inverse_y)
     }
 
-    /// What its opponent scopes demand.
+    /// Demands of the opponent scopes.
     #[inline]
     pub(crate) const fn demands(&self) -> Demands {
         Demands::from_bits(self.demands)
@@ -97,7 +98,7 @@ impl RecordHeader {
         records(places, self.places_at as usize, self.opponents)
     }
 
-    /// Its legs; each starts where the one before ends.
+    /// Legs of the ball path; each starts where the one before ends.
     #[inline]
     pub(crate) fn legs<'a>(&self, places: &'a [u32]) -> Option<&'a [RawLeg]> {
         records(places, self.legs_at(), self.legs)

@@ -1,7 +1,5 @@
 //! `validate`: one-time validation of case-base bytes, so that later accesses need no checks.
 
-use core::fmt;
-
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
 use super::{
@@ -11,43 +9,34 @@ use super::{
 use crate::Grid;
 use crate::action::{KICKS_MAX, OPPONENTS_MAX, Primitive, TEAMMATES_MAX};
 
-/// Why bytes are not a case base.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reason why bytes are not a case base.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
-    /// They do not start at a multiple of 4.
+    /// The bytes do not start at a multiple of 4.
+    #[error("the table does not begin at a multiple of 4 bytes")]
     Misaligned,
-    /// They are fewer or more than the header states.
+    /// The bytes are fewer or more than the header states.
+    #[error("the table is shorter or longer than its header states")]
     Length,
-    /// They are something else, another version, or of the other byte order.
+    /// The bytes are something else, another version, or of the other byte order.
+    #[error("not a case table of this version and byte order")]
     Magic,
     /// The hash does not match: damaged.
+    #[error("the table is damaged: its hash does not match")]
     Hash,
     /// The field, the radii of a pass or a kick kind are invalid.
+    #[error("the table's field, pass or kick kinds make no sense")]
     League,
     /// A record points outside its pool, or contains a value that no case can have.
+    #[error("authored case {authored} of the table makes no sense")]
     Case {
         /// Number of the authored case, from 0.
         authored: u32,
     },
     /// The index points outside the table.
+    #[error("the table's index makes no sense")]
     Index,
 }
-
-impl fmt::Display for TableError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Misaligned => f.write_str("the table does not begin at a multiple of 4 bytes"),
-            Self::Length => f.write_str("the table is shorter or longer than its header states"),
-            Self::Magic => f.write_str("not a case table of this version and byte order"),
-            Self::Hash => f.write_str("the table is damaged: its hash does not match"),
-            Self::League => f.write_str("the table's field, pass or kick kinds make no sense"),
-            Self::Case { authored } => write!(f, "authored case {authored} of the table makes no sense"),
-            Self::Index => f.write_str("the table's index makes no sense"),
-        }
-    }
-}
-impl core::error::Error for TableError {}
-
 impl<'a> CaseBase<'a> {
     /// Splits the table into its sections; all lengths are checked, no content.
     pub(super) fn split(bytes: &'a [u8]) -> Result<Self, TableError> {
@@ -63,7 +52,7 @@ impl<'a> CaseBase<'a> {
         let cells = usize::from(columns) * usize::from(rows);
         let copies = header.groups.checked_mul(4).ok_or(TableError::Length)?;
         let (groups, rest) = section(rest, header.groups)?;
-        let (gates, rest) = section(rest, copies)?;
+        let (record_headers, rest) = section(rest, copies)?;
         let (points, rest) = section(rest, header.points)?;
         let (kicks, rest) = section(rest, header.kicks)?;
         let (cell_starts, rest) = section(rest, cells as u32 + 1)?;
@@ -73,7 +62,18 @@ impl<'a> CaseBase<'a> {
         if !rest.is_empty() {
             return Err(TableError::Length);
         }
-        Ok(Self { bytes, header, groups, gates, points, kicks, cell_starts, places, cell_cases, actions })
+        Ok(Self {
+            bytes,
+            header,
+            groups,
+            record_headers,
+            points,
+            kicks,
+            cell_starts,
+            places,
+            cell_cases,
+            actions,
+        })
     }
 
     /// Checks the content of every section.
@@ -109,9 +109,9 @@ impl<'a> CaseBase<'a> {
         sides && self.header.pass.iter().all(|radius| *radius > 0) && kicks
     }
 
-    /// Whether one of the four copies is valid: records within their pools, values a case can have.
+    /// Returns whether one of the four copies is valid: records within their pools, values a case can have.
     fn copy_is_sound(&self, authored: usize, group: &Group, copy: u16) -> bool {
-        let Some(record_header) = self.gates.get(4 * authored + usize::from(copy)) else {
+        let Some(record_header) = self.record_headers.get(4 * authored + usize::from(copy)) else {
             return false;
         };
         let teammates = usize::from(record_header.teammates);
@@ -122,8 +122,7 @@ impl<'a> CaseBase<'a> {
             return false;
         }
         let ends = group.list_ends.get(..teammates).unwrap_or(&[]);
-        let end = |robot: usize| ends.get(robot).copied().unwrap_or(0);
-        let actions_count = end(teammates - 1);
+        let actions_count = ends.last().copied().unwrap_or(0);
         let (Some(opponents), Some(legs), Some(_)) = (
             record_header.opponents(self.places),
             record_header.legs(self.places),
@@ -137,32 +136,14 @@ impl<'a> CaseBase<'a> {
             && never_falls(ends)
             && group.defending <= 1
             && group.getter < record_header.teammates;
-        let scope_is_sound = |inverse: &[f32; 2]| inverse.iter().all(|i| i.is_finite() && *i > 0.0);
-        let list = |robot: usize| {
-            let from = robot.checked_sub(1).map_or(0, end);
-            actions.get(usize::from(from)..usize::from(end(robot))).unwrap_or(&[])
-        };
-        let legs_are_sound = || {
-            legs.iter().all(|leg| {
-                usize::from(leg.robot) < teammates
-                    && list(usize::from(leg.robot))
-                        .get(usize::from(leg.action))
-                        .is_some_and(|action| matches!(action.kind, RawAction::PASS_BALL | RawAction::KICK))
-                    && (leg.carried_to == RawLeg::NOT_CARRIED || leg.carried_to < group.points)
-                    && leg.to.iter().all(|coordinate| coordinate.is_finite())
-                    && leg.radii.iter().all(|radius| radius.is_finite() && *radius > 0.0)
-            })
-        };
-        let begins_with_the_ball =
-            || list(usize::from(group.getter)).first().map(|a| a.kind) == Some(RawAction::GET_BALL);
-        let is_whole_mm = |coordinate: &f32| f32::from(*coordinate as i16) == *coordinate;
+        let getters_first = gameplay(actions, ends, group.getter).first();
         whole
-            && record_header.ball.iter().all(is_whole_mm)
-            && scope_is_sound(&record_header.inverse_scope)
-            && opponents.iter().all(|opponent| scope_is_sound(&opponent.inverse_scope))
+            && record_header.ball.iter().all(|coordinate| f32::from(*coordinate as i16) == *coordinate)
+            && all_positive(&record_header.inverse_scope)
+            && opponents.iter().all(|opponent| all_positive(&opponent.inverse_scope))
             && actions.iter().all(|action| self.action_is_sound(record_header, group, *action))
-            && legs_are_sound()
-            && begins_with_the_ball()
+            && legs.iter().all(|leg| leg_is_sound(leg, group, gameplay(actions, ends, leg.robot)))
+            && getters_first.is_some_and(|action| action.kind == RawAction::GET_BALL)
     }
 
     fn action_is_sound(&self, record_header: &RecordHeader, group: &Group, action: RawAction) -> bool {
@@ -189,8 +170,31 @@ impl<'a> CaseBase<'a> {
             && [cell_mm, cells_per_mm].iter().all(|scale| scale.is_finite() && *scale > 0.0)
             && corner.iter().all(|coordinate| coordinate.is_finite())
             && starts_are_sound
-            && self.cell_cases.iter().all(|case| usize::from(*case) < self.gates.len())
+            && self.cell_cases.iter().all(|case| usize::from(*case) < self.record_headers.len())
     }
+}
+
+/// A robot's actions, from those of its case and the ends of the robots' lists; none for a robot that the case
+/// does not have.
+fn gameplay<'a>(actions: &'a [RawAction], ends: &[u8], robot: u8) -> &'a [RawAction] {
+    let end = |robot: usize| ends.get(robot).map_or(0, |end| usize::from(*end));
+    let robot = usize::from(robot);
+    actions.get(robot.checked_sub(1).map_or(0, end)..end(robot)).unwrap_or(&[])
+}
+
+/// Returns whether a leg is one of its kicker's passes or kicks, along finite coordinates; `gameplay` is the
+/// kicker's.
+fn leg_is_sound(leg: &RawLeg, group: &Group, gameplay: &[RawAction]) -> bool {
+    let action = gameplay.get(usize::from(leg.action));
+    action.is_some_and(|action| matches!(action.kind, RawAction::PASS_BALL | RawAction::KICK))
+        && (leg.carried_to == RawLeg::NOT_CARRIED || leg.carried_to < group.points)
+        && leg.to.iter().all(|coordinate| coordinate.is_finite())
+        && all_positive(&leg.radii)
+}
+
+/// Returns whether all of these are finite and above 0.
+fn all_positive(numbers: &[f32]) -> bool {
+    numbers.iter().all(|number| number.is_finite() && *number > 0.0)
 }
 
 /// Maximum number of authored cases: their four copies are numbered by a `u16`.

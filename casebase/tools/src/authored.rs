@@ -37,13 +37,20 @@ pub(crate) struct Teammate {
     pub(crate) gameplay: Vec<(Action, Range<usize>)>,
 }
 
+impl Teammate {
+    /// Returns whether the first action is `get_ball`.
+    pub(crate) fn is_getter(&self) -> bool {
+        self.gameplay.first().is_some_and(|(action, _)| *action == Action::GetBall)
+    }
+}
+
 /// An opponent and its scope.
 #[derive(Clone, Debug)]
 pub(crate) struct Opponent {
     pub(crate) at: PointMm,
     pub(crate) span: Range<usize>,
     pub(crate) scope: Scope,
-    /// What its scope demands.
+    /// Demand of the scope.
     pub(crate) presence: Presence,
 }
 

@@ -1,7 +1,7 @@
 //! `check`: errors that make a case unplayable, beyond the syntax of its file (docs/case-format.md §1.2).
 
-use casebase::plan_simulation::{PlanError, PlanStep, Script, Spot, plan_simulation};
-use casebase::{Action, CaseRobot, LegKind, Symmetry};
+use casebase::plan_simulation::{PlanError, PlanStep, Script, plan_simulation};
+use casebase::{CaseRobot, LegKind, Symmetry};
 
 use crate::authored::Authored;
 use crate::codes::code;
@@ -28,13 +28,9 @@ pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &CaseLeague) ->
         }
     }
 
-    let is_getter = |robot: &CaseRobot| {
-        case.teammates[robot.index()].gameplay.first().is_some_and(|(action, _)| *action == Action::GetBall)
-    };
-    let getters: Vec<_> = CaseRobot::first(case.teammates.len()).filter(is_getter).collect();
+    let getters: Vec<_> = case.teammates.iter().filter(|teammate| teammate.is_getter()).collect();
     if getters.len() != 1 {
-        let span =
-            getters.get(1).map_or(&case.teammates[0].span, |extra| &case.teammates[extra.index()].span);
+        let span = &getters.get(1).copied().unwrap_or(&case.teammates[0]).span;
         let message = format!("{} robots begin with get_ball", getters.len());
         error(code::ONE_GETTER, span, message, "let exactly one robot begin with \"get_ball\"");
         return findings;
@@ -76,11 +72,7 @@ pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &CaseLeague) ->
             LegKind::Pass(_) => ("pass", league.pass_reach),
             LegKind::Kick(id) => ("kick", league.reach(id)),
         };
-        let on_field = |spot: Spot| {
-            let [x, y] = if spot.on_field { [0.0; 2] } else { case.ball.to_f32() };
-            [spot.at[0] + x, spot.at[1] + y]
-        };
-        let ([from_x, from_y], [to_x, to_y]) = (on_field(from), on_field(to));
+        let ([from_x, from_y], [to_x, to_y]) = (from.in_field(case.ball), to.in_field(case.ball));
         let length = (to_x - from_x).hypot(to_y - from_y);
         if let Some(reach) = reach.filter(|reach| length > *reach as f32) {
             let message = format!("the {what} ends {length:.0} mm away, and rolls {reach} mm");

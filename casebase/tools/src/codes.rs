@@ -9,11 +9,11 @@ use crate::finding::Severity;
 /// One kind of finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CodeEntry {
-    /// Its code, as findings print it.
+    /// Code as findings print it.
     pub code: &'static str,
-    /// Whether the library is refused.
+    /// Severity: an error refuses the library.
     pub severity: Severity,
-    /// Its meaning and its fix.
+    /// Meaning and fix of the finding.
     pub meaning: &'static str,
 }
 
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_are_distinguished_and_errors_come_first() {
+    fn codes_are_unique_and_errors_come_first() {
         let mut seen: Vec<_> = CODES.iter().map(|entry| entry.code).collect();
         seen.sort_unstable();
         seen.dedup();

@@ -13,10 +13,10 @@ use casebase::{
 };
 use protocol::{CaseId, RobotId};
 
-/// What would make a case the retrieved one.
+/// Change that would make a case the retrieved one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Counterfactual {
-    /// It is the retrieved case.
+    /// The case is the retrieved one.
     Winner,
     /// The shortest single move that makes it the retrieved case.
     Move(Move),
@@ -29,9 +29,9 @@ pub enum Counterfactual {
 pub struct Move {
     /// The object that is moved.
     pub entity: Entity,
-    /// Its old position, mm, field frame.
+    /// Old position, mm, field frame.
     pub from: PointMm,
-    /// Its new position, mm, field frame.
+    /// New position, mm, field frame.
     pub to: PointMm,
     /// Length of the move, mm.
     pub distance_mm: f32,
@@ -48,7 +48,7 @@ pub enum Entity {
     Opponent(usize),
 }
 
-/// Why no single move works.
+/// Reason why no single move works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CounterfactualObstacle {
     /// Fewer robots are present than the case needs.
@@ -209,8 +209,8 @@ impl Search<'_, '_> {
         case.opponents().map(move |(at, scope)| (at.plus(shift), scope))
     }
 
-    /// Whether the move to `target` works. Then the shortest part of it that works is kept if it is the
-    /// shortest of all.
+    /// Returns whether the move to `target` works. Then the shortest part of it that works is kept if it is
+    /// the shortest of all.
     fn shorten(&mut self, entity: Entity, from: PointMm, target: PointMm) -> bool {
         self.tried += 1;
         if !self.serves(entity, from, target) {

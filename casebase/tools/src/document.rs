@@ -142,7 +142,7 @@ impl<'f> Reader<'f> {
 }
 
 impl<'t, 'i> Table<'t, 'i> {
-    /// The whole file.
+    /// Table of the whole file.
     pub(crate) fn root(root: &'t Spanned<DeTable<'i>>) -> Self {
         Self { keys: root.get_ref(), name: String::new(), span: 0..0 }
     }

@@ -4,6 +4,8 @@
 //! The code that will read the table computes its content: `casebase`'s symmetry, plan simulation and
 //! records.
 
+use std::collections::BTreeMap;
+
 use casebase::plan_simulation::{PlanStep, Script, plan_simulation};
 use casebase::table::{
     Group, HASHED_FROM, Header, MAGIC, OpponentRecord, RawAction, RawKick, RawLeg, RecordHeader, content_hash,
@@ -11,7 +13,7 @@ use casebase::table::{
 use casebase::{Action, CaseRobot, Demands, GoalEnd, PointMm, Scope, Symmetry, TurnTarget, cells_of};
 use zerocopy::IntoBytes;
 
-use crate::authored::{Authored, Mirrored};
+use crate::authored::{Authored, Mirrored, Teammate};
 use crate::grid;
 use crate::league::CaseLeague;
 
@@ -44,7 +46,7 @@ pub(crate) fn encode(league: &CaseLeague, cases: &[Authored], symmetry: bool) ->
         pools.add(case, league);
     }
     if !symmetry {
-        let images = pools.gates.iter_mut().enumerate().filter(|(id, _)| !id.is_multiple_of(4));
+        let images = pools.record_headers.iter_mut().enumerate().filter(|(id, _)| !id.is_multiple_of(4));
         images.for_each(|(_, record_header)| (record_header.ball, record_header.inverse_scope) = NOWHERE);
     }
     let kicks: Vec<_> = league.kicks.iter().map(|(_, kick)| RawKick::encode(*kick)).collect();
@@ -74,7 +76,7 @@ pub(crate) fn encode(league: &CaseLeague, cases: &[Authored], symmetry: bool) ->
     };
     let body = [
         pools.groups.as_bytes(),
-        pools.gates.as_bytes(),
+        pools.record_headers.as_bytes(),
         pools.points.as_bytes(),
         kicks.as_bytes(),
         index.starts.as_bytes(),
@@ -94,7 +96,7 @@ const NOWHERE: ([f32; 2], [f32; 2]) = ([32_767.0; 2], [1.0; 2]);
 #[derive(Default)]
 struct Pools {
     groups: Vec<Group>,
-    gates: Vec<RecordHeader>,
+    record_headers: Vec<RecordHeader>,
     points: Vec<[i32; 2]>,
     places: Vec<u32>,
     actions: Vec<RawAction>,
@@ -103,11 +105,17 @@ struct Pools {
 impl Pools {
     /// Their length so far, bytes.
     fn bytes(&self) -> usize {
-        let Self { groups, gates, points, places, actions } = self;
-        [groups.as_bytes(), gates.as_bytes(), points.as_bytes(), places.as_bytes(), actions.as_bytes()]
-            .map(<[u8]>::len)
-            .iter()
-            .sum()
+        let Self { groups, record_headers, points, places, actions } = self;
+        [
+            groups.as_bytes(),
+            record_headers.as_bytes(),
+            points.as_bytes(),
+            places.as_bytes(),
+            actions.as_bytes(),
+        ]
+        .map(<[u8]>::len)
+        .iter()
+        .sum()
     }
 
     /// The four copies of a case.
@@ -122,16 +130,13 @@ impl Pools {
             end += teammate.gameplay.len();
             *list_end = end as u8;
         }
-        let is_getter = |teammate: &crate::authored::Teammate| {
-            teammate.gameplay.first().is_some_and(|(action, _)| *action == Action::GetBall)
-        };
         self.groups.push(Group {
             points_at: points_at as u32,
             actions_at: actions_at as u32,
             points: ((self.points.len() - points_at) / 4) as u8,
             list_ends,
             defending: u8::from(case.defending == GoalEnd::Positive),
-            getter: case.teammates.iter().position(is_getter).unwrap_or(0) as u8,
+            getter: case.teammates.iter().position(Teammate::is_getter).unwrap_or(0) as u8,
             reserved: 0,
         });
     }
@@ -153,19 +158,15 @@ impl Pools {
             .collect();
         let first_point = self.points.len();
         // The point of each action that has one, by robot and index in its list.
-        let mut point_of = Vec::new();
+        let mut point_of = BTreeMap::new();
         for robot in robots {
             for index in 0.. {
                 let Some(action) = copy.action(robot, index) else { break };
                 let argument = (self.points.len() - first_point) as u8;
                 let raw = self.add_action(action, argument);
-                point_of.push(((robot, index), raw.argument));
+                point_of.insert((robot, index), raw.argument);
             }
         }
-        let carried_to = |by: Option<(CaseRobot, usize)>| {
-            by.and_then(|by| point_of.iter().find(|(at, _)| *at == by))
-                .map_or(RawLeg::NOT_CARRIED, |(_, point)| *point)
-        };
         let mut legs = Vec::new();
         let walked = plan_simulation(copy, league, |step| {
             if let PlanStep::Leg { robot, action, to, radii, carried_by, .. } = step {
@@ -174,13 +175,16 @@ impl Pools {
                     radii: radii.map(|radius| radius as f32),
                     robot: robot.index() as u8,
                     action: action as u8,
-                    carried_to: carried_to(carried_by),
+                    carried_to: carried_by
+                        .and_then(|by| point_of.get(&by))
+                        .copied()
+                        .unwrap_or(RawLeg::NOT_CARRIED),
                     flags: if to.on_field { RawLeg::TO_FIELD } else { 0 },
                 });
             }
         });
         debug_assert!(walked.is_ok(), "only cases that can be walked are encoded: {walked:?}");
-        self.gates.push(RecordHeader {
+        self.record_headers.push(RecordHeader {
             ball: narrow(ball).map(f32::from),
             inverse_scope: inverse(copy.case.ball_scope),
             places_at: self.places.len() as u32,

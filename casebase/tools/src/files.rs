@@ -10,15 +10,20 @@ use crate::finding::{Finding, Severity};
 /// A file of a library, read.
 #[derive(Clone, Debug)]
 pub struct SourceFile {
-    /// Its path, as in findings.
+    /// Path as in findings.
     pub path: PathBuf,
-    /// Its path in the library, with `/`, without `.toml`.
+    /// Path in the library, with `/`, without `.toml`.
     pub name: String,
-    /// Its whole text, TOML.
+    /// Whole text of the file, TOML.
     pub text: String,
 }
 
 impl SourceFile {
+    fn new(directory: &Path, name: &str, text: &str) -> Self {
+        let path = directory.join(format!("{name}.toml"));
+        Self { path, name: name.to_owned(), text: text.to_owned() }
+    }
+
     /// The line, from 1, of a byte of the text.
     pub(crate) fn line(&self, at: usize) -> u32 {
         self.text.bytes().take(at).filter(|byte| *byte == b'\n').count() as u32 + 1
@@ -45,9 +50,9 @@ impl SourceFile {
 /// A line of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SourcePlace {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
-    /// Its line, from 1.
+    /// Line in the file, from 1.
     pub line: u32,
 }
 
@@ -85,24 +90,17 @@ impl Files {
 
     /// Files from memory: `cases` as pairs of `region/name` and text.
     pub fn from_texts(league: &str, rules: &str, cases: &[(&str, &str)]) -> Self {
-        let file = |name: &str, text: &str| SourceFile {
-            path: Path::new(league).join(format!("{name}.toml")),
-            name: name.to_owned(),
-            text: text.to_owned(),
-        };
-        let cases = cases.iter().map(|(name, text)| file(name, text)).collect();
-        Self { league: league.to_owned(), rules: file(LEAGUE, rules), cases }.sorted()
+        let directory = Path::new(league);
+        let cases = cases.iter().map(|(name, text)| SourceFile::new(directory, name, text)).collect();
+        let rules = SourceFile::new(directory, LEAGUE, rules);
+        Self { league: league.to_owned(), rules, cases }.sorted()
     }
 
     /// The same files with this text as that of the case `name`, which is added where there is none.
     pub fn with(&self, name: &str, text: &str) -> Self {
         let mut files = self.clone();
         let directory = self.rules.path.parent().unwrap_or(Path::new(""));
-        let file = SourceFile {
-            path: directory.join(format!("{name}.toml")),
-            name: name.to_owned(),
-            text: text.to_owned(),
-        };
+        let file = SourceFile::new(directory, name, text);
         files.cases.retain(|case| case.name != name);
         files.cases.push(file);
         files.sorted()

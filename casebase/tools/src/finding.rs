@@ -13,15 +13,15 @@ const MESSAGE_LEN: usize = 1000;
 pub struct Finding {
     /// Code of its kind, for look-up.
     pub code: &'static str,
-    /// Whether the library is refused.
+    /// Severity: an error refuses the library.
     pub severity: Severity,
     /// Path of the file at fault.
     pub file: PathBuf,
-    /// Its line, from 1.
+    /// Line in the file, from 1.
     pub line: u32,
-    /// What is wrong, one sentence.
+    /// Description of the fault, one sentence.
     pub message: String,
-    /// How to fix it.
+    /// Advice how to fix it.
     pub hint: String,
 }
 

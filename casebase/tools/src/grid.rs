@@ -8,7 +8,7 @@ use casebase::{FieldMm, GoalEnd, Grid, PointMm, Symmetry};
 
 use crate::authored::Authored;
 
-/// A built index.
+/// Index of the cases by the ball's position.
 pub(crate) struct Index {
     pub(crate) grid: Grid,
     /// Start of the list of each cell in `cases`, and the end of the last.
@@ -56,22 +56,22 @@ fn over(grid: Grid, cases: &[Authored]) -> Index {
             }
         }
     }
-    let promise = |id: &u16| {
-        let case = &cases[usize::from(*id / 4)];
-        (std::cmp::Reverse((case.opponents.len(), case.teammates.len())), *id)
-    };
     let mut starts = vec![0];
     let mut listed = Vec::new();
     for mut list in lists {
-        list.sort_by_key(promise);
+        // Cases that can fulfil most conditions come first.
+        list.sort_by_key(|id| {
+            let case = &cases[usize::from(*id / 4)];
+            (std::cmp::Reverse((case.opponents.len(), case.teammates.len())), *id)
+        });
         listed.extend(list);
         starts.push(listed.len() as u32);
     }
     Index { grid, starts, cases: listed }
 }
 
-/// Whether the ball scope overlaps the cell. Cells at the border extend to infinity, but not over the middle
-/// line.
+/// Returns whether the ball scope overlaps the cell. Cells at the border extend to infinity, but not over the
+/// middle line.
 fn reaches(case: &Authored, ball: PointMm, grid: &Grid, column: u16, row: u16) -> bool {
     let edge = |corner: f32, cells: u16| f64::from(corner) + f64::from(cells) * f64::from(grid.cell_mm);
     let gap = |at: i32, low: f64, high: f64| (low - f64::from(at)).max(f64::from(at) - high).max(0.0);
@@ -81,7 +81,7 @@ fn reaches(case: &Authored, ball: PointMm, grid: &Grid, column: u16, row: u16) -
     let top = if row + 1 == grid.rows { f64::INFINITY } else { edge(corner_y, row + 1) };
     let dx = gap(ball.x, left, right) / f64::from(case.ball_scope.x);
     let dy = gap(ball.y, edge(corner_y, row), top) / f64::from(case.ball_scope.y);
-    dx * dx + dy * dy <= f64::from(SCOPE_EXPONENT) * ROUNDING
+    dx * dx + dy * dy <= f64::from(SCOPE_EXPONENT) * ROUNDING_FACTOR
 }
 
 /// Budget of a stored case, bytes (docs/architecture.md §9): the index may use what the other records leave
@@ -94,4 +94,4 @@ const CELLS_MM: [i32; 10] = [150, 200, 250, 300, 350, 400, 600, 900, 1500, 3000]
 /// Maximum number of cells along an axis.
 const CELLS_MAX: u16 = casebase::table::GRID_MAX;
 /// Tolerance for rounding errors of the single-precision record header.
-const ROUNDING: f64 = 1.0001;
+const ROUNDING_FACTOR: f64 = 1.0001;

@@ -12,7 +12,7 @@ pub const OPPONENT: &[&str] = &["at", "scope", "presence"];
 /// A robot of a case.
 pub const TEAMMATE: &[&str] = &["at", "gameplay"];
 /// Actions without an argument, written as a string.
-pub const DESCRIPTION: &[&str] = &["wait", "get_ball"];
+pub const BARE_ACTIONS: &[&str] = &["wait", "get_ball"];
 /// Actions that are a table of one key.
 pub const ACTIONS: &[&str] = &["go_to_point", "turn", "dribble_to", "pass_ball", "receive_ball", "kick"];
 /// Directions of a `turn`, one of them.

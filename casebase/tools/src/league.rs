@@ -19,13 +19,13 @@ pub struct CaseLeague {
     pub field: FieldMm,
     /// Radii r_min and r_max of passes, mm.
     pub pass: Pass,
-    /// How far a pass rolls at most, mm, where the file says so; so far its receiver may stand.
+    /// Longest roll of a pass, mm, where the file states it: the greatest distance of its receiver.
     pub pass_reach: Option<i32>,
     /// Kick kinds by name, in the order of their names: this order is their [`KickId`]s.
     pub kicks: Vec<(String, CaseKick)>,
     /// Areas of the robots in drawn problems, where the file contains them.
     pub lineup: Option<Lineup>,
-    /// How far each kind at the goal rolls, mm, where the file says so.
+    /// Longest roll of each kick kind at the goal, mm, where the file states it.
     reaches: Vec<Option<i32>>,
     /// The kind that replaces each under a single reflection.
     partners: Vec<KickId>,
@@ -50,7 +50,7 @@ impl CaseLeague {
         self.kicks.iter().position(|(known, _)| known == name).map(|at| KickId(at as u8))
     }
 
-    /// How far a kind at the goal rolls, mm, where the file says so.
+    /// Longest roll of a kick kind at the goal, mm, where the file states it.
     pub(crate) fn reach(&self, id: KickId) -> Option<i32> {
         self.reaches.get(usize::from(id.0)).copied().flatten()
     }
@@ -188,7 +188,7 @@ fn read_primitive(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> 
     primitive
 }
 
-/// Whether `other` is a mirror image of `kick`.
+/// Returns whether `other` is a mirror image of `kick`.
 fn are_partners(kick: CaseKick, other: CaseKick) -> bool {
     let opposite = match (kick.aim, other.aim) {
         (

@@ -39,7 +39,9 @@ pub use encode::Table;
 pub use files::{CASE_FILE_LEN_MAX, Files, SourceFile, SourcePlace};
 pub use finding::{Finding, Severity};
 pub use league::CaseLeague;
-pub use library::{Library, Reduction, build, build_reduced, build_without_warnings, load, load_telling};
+pub use library::{
+    Library, Reduction, build, build_reduced, build_without_warnings, load, load_with_progress,
+};
 pub use lineup::{Lineup, Rectangle};
 pub use sample::Sampler;
 pub use sampled::never_retrieved;

@@ -15,7 +15,6 @@ use crate::finding::{Finding, Severity};
 use crate::league::CaseLeague;
 use crate::lineup::Lineup;
 use crate::sample::Sampler;
-use crate::warnings::warnings;
 
 /// One league's cases, checked, mirrored and encoded. Lists have one entry per authored case, in the order of
 /// ids.
@@ -44,15 +43,32 @@ pub struct Library {
 /// Reads one league's directory; returns the findings, with at least one error among them, where it is
 /// refused.
 pub fn load(directory: &Path) -> Result<Library, Vec<Finding>> {
-    load_telling(directory, |_, _| {})
+    load_with_progress(directory, |_, _| {})
 }
 
-/// The same; `report` is called with the number of completed steps and the total: two a case file.
-pub fn load_telling(directory: &Path, report: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
-    build_telling(&Files::read(directory)?, Reduction::NONE, true, report)
+/// The same; `on_progress` is called with the number of completed steps and the total: two a case file.
+pub fn load_with_progress(
+    directory: &Path,
+    on_progress: impl FnMut(usize, usize),
+) -> Result<Library, Vec<Finding>> {
+    build_with(&Files::read(directory)?, BuildOptions::FULL, on_progress)
 }
 
-/// Which parts of its cases a library keeps: for measuring the value of each.
+/// Options of a build.
+#[derive(Clone, Copy)]
+struct BuildOptions {
+    /// Parts of the cases that are kept.
+    reduction: Reduction,
+    /// Search for warnings, which takes most of the time.
+    warnings: bool,
+}
+
+impl BuildOptions {
+    /// Whole cases, with warnings.
+    const FULL: Self = Self { reduction: Reduction::NONE, warnings: true };
+}
+
+/// Parts of its cases that a library keeps: for measuring the value of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reduction {
     /// Mirrored copies (paper §2.4); without them only authored cases are ever found, under their own ids.
@@ -69,30 +85,29 @@ impl Reduction {
 /// The library of files that were read, with these parts of its cases alone; without warnings about the
 /// reduced cases.
 pub fn build_reduced(files: &Files, reduction: Reduction) -> Result<Library, Vec<Finding>> {
-    build_telling(files, reduction, false, |_, _| {})
+    build_with(files, BuildOptions { reduction, warnings: false }, |_, _| {})
 }
 
 /// The library of files that were read; without warnings, which take most of the time.
 pub fn build_without_warnings(files: &Files) -> Result<Library, Vec<Finding>> {
-    build_telling(files, Reduction::NONE, false, |_, _| {})
+    build_with(files, BuildOptions { reduction: Reduction::NONE, warnings: false }, |_, _| {})
 }
 
 /// The library of files that were read.
 pub fn build(files: &Files) -> Result<Library, Vec<Finding>> {
-    build_telling(files, Reduction::NONE, true, |_, _| {})
+    build_with(files, BuildOptions::FULL, |_, _| {})
 }
 
-fn build_telling(
+fn build_with(
     files: &Files,
-    reduction: Reduction,
-    doubt: bool,
-    mut report: impl FnMut(usize, usize),
+    BuildOptions { reduction, warnings }: BuildOptions,
+    mut on_progress: impl FnMut(usize, usize),
 ) -> Result<Library, Vec<Finding>> {
     let steps = 2 * files.cases.len();
     let (league, mut findings) = CaseLeague::read(&files.rules);
     let mut cases = Vec::new();
     for (done, file) in files.cases.iter().enumerate() {
-        report(done, steps);
+        on_progress(done, steps);
         let (case, read) = Authored::read(file, league.as_ref());
         findings.extend(read);
         if let (Some(case), Some(league)) = (case, &league) {
@@ -127,10 +142,11 @@ fn build_telling(
         lineup: league.lineup.clone().unwrap_or_else(|| Lineup::guess(league.field, largest)),
         findings,
     };
-    if doubt {
-        let doubts =
-            warnings(files, &cases, &library.base(), &league, |done| report(files.cases.len() + done, steps));
-        library.note(doubts);
+    if warnings {
+        let found = crate::warnings::warnings(files, &cases, &library.base(), &league, |done| {
+            on_progress(files.cases.len() + done, steps);
+        });
+        library.note(found);
     }
     Ok(library)
 }

@@ -92,7 +92,7 @@ impl Lineup {
 }
 
 impl Rectangle {
-    /// With its ends in rising order, for all dimensions of the field.
+    /// Puts the ends in rising order, for all dimensions of the field.
     fn in_order(self) -> Self {
         let ordered = |[a, b]: [i32; 2]| [a.min(b), a.max(b)];
         Self { x: ordered(self.x), y: ordered(self.y) }

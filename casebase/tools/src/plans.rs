@@ -34,15 +34,17 @@ fn same_spot(notes: &mut Notes<'_>, case: &Authored) {
     let opponents = opponents.map(|(i, opponent)| (format!("opp{}", i + 1), opponent.at, &opponent.span));
     let all: Vec<_> = teammates.chain(opponents).collect();
     for (later, (who, at, span)) in all.iter().enumerate() {
-        let near = |(_, other, _): &&(String, PointMm, &Range<usize>)| {
-            let [dx, dy] = at.minus(*other).to_f32();
-            dx * dx + dy * dy < ROOM_MM * ROOM_MM
-        };
-        if let Some((other, ..)) = all[..later].iter().find(near) {
+        if let Some((other, ..)) = all[..later].iter().find(|(_, other, _)| is_near(*at, *other)) {
             let message = format!("{who} and {other} stand less than {ROOM_MM} mm apart");
             notes.add(code::SAME_SPOT, span, message, "move one of the two");
         }
     }
+}
+
+/// Returns whether two robots would overlap.
+fn is_near(a: PointMm, b: PointMm) -> bool {
+    let [dx, dy] = a.minus(b).to_f32();
+    dx * dx + dy * dy < ROOM_MM * ROOM_MM
 }
 
 fn leg_doubts(notes: &mut Notes<'_>, leg: &Leg, span: &Range<usize>, league: &CaseLeague) {

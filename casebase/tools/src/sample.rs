@@ -75,7 +75,7 @@ impl Sampler {
         let homes = lineups.get(chance.below(lineups.len() as u32) as usize).map_or(&[][..], Vec::as_slice);
         for home in homes {
             // Where there is no room to wait, it stands elsewhere in its home.
-            let mut patience = if chance.coin() { ATTEMPTS / 2 } else { 0 };
+            let mut patience = if chance.coin() { DRAWS_MAX / 2 } else { 0 };
             let at = place(&taken, ball, NEAR_BALL_OPPONENT, || {
                 let waits = patience > 0;
                 patience = patience.saturating_sub(1);
@@ -85,7 +85,7 @@ impl Sampler {
                     home.nearest(ball.plus(self.in_front(ball, chance)))
                 } else {
                     let nearest = home.nearest(ball);
-                    let stray = Rectangle { x: [-STRAY, STRAY], y: [-STRAY, STRAY] };
+                    let stray = Rectangle { x: [-STRAY_MM, STRAY_MM], y: [-STRAY_MM, STRAY_MM] };
                     home.nearest(nearest.plus(chance.within(stray)))
                 }
             });
@@ -99,28 +99,32 @@ impl Sampler {
     /// deviation.
     fn in_front(&self, ball: PointMm, chance: &mut RandomStream) -> PointMm {
         let goal = PointMm::new(self.field.length / 2, 0).minus(ball).to_f32();
-        let distance = chance.between(IN_FRONT[0], IN_FRONT[1]) as f32;
+        let distance = chance.between(IN_FRONT_MM[0], IN_FRONT_MM[1]) as f32;
         let length = geometry::math::hypot(goal[0], goal[1]).max(1.0);
         let ahead = goal.map(|part| geometry::math::round_to_i32(part * distance / length));
-        let stray = Rectangle { x: [-STRAY, STRAY], y: [-STRAY, STRAY] };
+        let stray = Rectangle { x: [-STRAY_MM, STRAY_MM], y: [-STRAY_MM, STRAY_MM] };
         PointMm::new(ahead[0], ahead[1]).plus(chance.within(stray))
     }
 }
 
-/// The first draw that is clear of the ball and of all other robots; after [`ATTEMPTS`] draws the last one.
+/// The first draw that is clear of the ball and of all other robots; after [`DRAWS_MAX`] draws the last one.
 fn place(taken: &[PointMm], ball: PointMm, from_ball: i64, mut draw: impl FnMut() -> PointMm) -> PointMm {
-    let apart = |a: PointMm, b: PointMm, distance: i64| {
-        let (dx, dy) = (i64::from(a.x - b.x), i64::from(a.y - b.y));
-        dx * dx + dy * dy >= distance * distance
-    };
     let mut at = draw();
-    for _ in 0..ATTEMPTS {
-        if apart(at, ball, from_ball) && taken.iter().all(|other| apart(at, *other, BODIES)) {
+    for _ in 0..DRAWS_MAX {
+        if are_apart(at, ball, from_ball)
+            && taken.iter().all(|other| are_apart(at, *other, ROBOT_DISTANCE_MIN_MM))
+        {
             break;
         }
         at = draw();
     }
     at
+}
+
+/// Returns whether two points are at least `distance` apart, mm.
+fn are_apart(a: PointMm, b: PointMm, distance: i64) -> bool {
+    let (dx, dy) = (i64::from(a.x - b.x), i64::from(a.y - b.y));
+    dx * dx + dy * dy >= distance * distance
 }
 
 /// The copy of an attack towards +x for a team that defends `defending`, with the sides swapped or not.
@@ -163,7 +167,7 @@ impl RandomStream {
         self.below(2) == 1
     }
 
-    /// Uniform in `low..=high`.
+    /// Random integer, uniform in `low..=high`.
     fn between(&mut self, low: i32, high: i32) -> i32 {
         low + self.below(high.abs_diff(low) + 1) as i32
     }
@@ -176,7 +180,7 @@ impl RandomStream {
 
 /// Minimum distance between the centres of two robots, mm: two bodies of the four-legged league (radius 120)
 /// and a margin.
-const BODIES: i64 = 250;
+const ROBOT_DISTANCE_MIN_MM: i64 = 250;
 /// Minimum distance between a teammate's centre and the ball, mm: it does not have the ball yet.
 const NEAR_BALL_TEAMMATE: i64 = 170;
 /// Minimum distance between an opponent's centre and the ball, mm: a nearer one has the ball, and there is no
@@ -184,12 +188,12 @@ const NEAR_BALL_TEAMMATE: i64 = 170;
 const NEAR_BALL_OPPONENT: i64 = 300;
 /// Distance in front of the ball, mm, of an opponent whose home contains the ball: scenarios 4 (300) to 3
 /// (550).
-const IN_FRONT: [i32; 2] = [300, 550];
+const IN_FRONT_MM: [i32; 2] = [300, 550];
 /// Deviation of an opponent from its waiting position, mm in each direction: what it walks in a third of a
 /// second.
-const STRAY: i32 = 100;
+const STRAY_MM: i32 = 100;
 /// Maximum number of draws for a position without overlap.
-const ATTEMPTS: u32 = 30;
+const DRAWS_MAX: u32 = 30;
 
 #[cfg(test)]
 mod tests {
@@ -231,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn everyone_stands_in_the_area_the_line_up_gives_and_clear_of_others() {
+    fn robots_are_drawn_in_the_areas_of_the_line_up_and_clear_of_each_other() {
         let lineup = Lineup::guess(FIELD, 2);
         let mut crowded = 0;
         for number in 0..2000 {

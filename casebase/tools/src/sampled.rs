@@ -56,7 +56,7 @@ fn reason(library: &Library, case: &CaseCounters, drawn: u64) -> (String, &'stat
             "tell them apart by opponents, robots or scopes, or take it out",
         );
     }
-    let at_ball = drawn - case.verdicts[BALL];
+    let at_ball = drawn - case.verdicts[BALL_INDEX];
     if at_ball == 0 {
         return (
             "a candidate in none of them, no ball lay in its scope".to_owned(),
@@ -66,7 +66,7 @@ fn reason(library: &Library, case: &CaseCounters, drawn: u64) -> (String, &'stat
     let (label, count) = VERDICTS
         .iter()
         .zip(&case.verdicts)
-        .skip(BALL + 1)
+        .skip(BALL_INDEX + 1)
         .fold(("", 0), |most, (label, count)| if *count > most.1 { (*label, *count) } else { most });
     let (failed, hint) = match label {
         "robots" => (
@@ -88,4 +88,4 @@ fn reason(library: &Library, case: &CaseCounters, drawn: u64) -> (String, &'stat
 }
 
 /// The index of "ball" in [`VERDICTS`].
-const BALL: usize = 0;
+const BALL_INDEX: usize = 0;

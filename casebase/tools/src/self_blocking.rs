@@ -21,14 +21,14 @@ pub fn share(stored: &Case<'_>, base: &CaseBase<'_>, at: PointMm, scope: Scope) 
 
 /// Places in the unit circle, in a square grid; the scope ends there.
 fn grid() -> impl Iterator<Item = (f32, f32)> {
-    let place = |i: i32| i as f32 / HALF as f32;
-    (-HALF..=HALF)
-        .flat_map(move |i| (-HALF..=HALF).map(move |j| (place(i), place(j))))
+    let place = |i: i32| i as f32 / PLACES_PER_RADIUS as f32;
+    (-PLACES_PER_RADIUS..=PLACES_PER_RADIUS)
+        .flat_map(move |i| (-PLACES_PER_RADIUS..=PLACES_PER_RADIUS).map(move |j| (place(i), place(j))))
         .filter(|(x, y)| x * x + y * y <= 1.0)
 }
 
 /// Places from the centre to the border: 193 places a scope, which find a share to about a hundredth.
-const HALF: i32 = 8;
+const PLACES_PER_RADIUS: i32 = 8;
 /// A larger share is a warning.
 pub const WARNS_ABOVE: f32 = 0.1;
 

@@ -27,11 +27,11 @@ pub struct Skeleton {
     pub notes: Vec<String>,
     /// The findings of `cases check` on it.
     pub findings: Vec<Finding>,
-    /// Whether it is retrieved from the problem, as the only case.
+    /// True if the case is retrieved from the problem, as the only one.
     pub retrieved: bool,
 }
 
-/// Why there is no draft.
+/// Reason why there is no draft.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SkeletonError {
     /// The problem has no robot of ours, and a case needs one.
@@ -74,19 +74,11 @@ impl Scene {
         teammates.sort_by_key(|(id, at)| (square(*at, ball), id.number()));
         let mut opponents: Vec<(usize, PointMm)> = (1..).zip(problem.opponents.iter().copied()).collect();
         opponents.sort_by_key(|(number, at)| (square(*at, ball), *number));
-        let mut notes = Vec::new();
-        let mut left_out = |who: &str, names: Vec<String>, most: usize| {
-            if !names.is_empty() {
-                let names = names.join(", ");
-                notes.push(format!(
-                    "left out, as a case has {most} at most and they are farther off: {who} {names}"
-                ));
-            }
-        };
         let robots = teammates.split_off(teammates.len().min(TEAMMATES_MAX));
-        left_out("robot", robots.iter().map(|(id, _)| id.to_string()).collect(), TEAMMATES_MAX);
         let others = opponents.split_off(opponents.len().min(OPPONENTS_MAX));
-        left_out("opponent", others.iter().map(|(number, _)| number.to_string()).collect(), OPPONENTS_MAX);
+        let mut notes = Vec::new();
+        notes.extend(left_out("robot", robots.iter().map(|(id, _)| id), TEAMMATES_MAX));
+        notes.extend(left_out("opponent", others.iter().map(|(number, _)| number), OPPONENTS_MAX));
         let mut inside = |who: String, at: PointMm| {
             let moved = field.clamp(at);
             if moved != at {
@@ -148,6 +140,13 @@ impl Scene {
     }
 }
 
+/// Note of the robots that a case has no room for; none where there are none.
+fn left_out(who: &str, names: impl Iterator<Item = impl ToString>, most: usize) -> Option<String> {
+    let names: Vec<_> = names.map(|name| name.to_string()).collect();
+    let names = (!names.is_empty()).then(|| names.join(", "))?;
+    Some(format!("left out, as a case has {most} at most and they are farther off: {who} {names}"))
+}
+
 /// Possible plans of the robot at the ball, the likeliest first: in the attacking half at the goal, else
 /// straight ahead.
 fn plans(league: &CaseLeague, scene: &Scene) -> Vec<String> {
@@ -157,9 +156,10 @@ fn plans(league: &CaseLeague, scene: &Scene) -> Vec<String> {
         KickAim::Goal { offset_mm } => (!attacks, offset_mm.abs(), 0),
         KickAim::Heading { degrees, length_mm } => (attacks, degrees.abs(), -length_mm),
     });
-    let description =
-        |name: &String| format!("\"get_ball\", {{ kick = {} }}", toml::Value::from(name.as_str()));
-    let mut plans: Vec<_> = kicks.into_iter().map(|(name, _)| description(name)).collect();
+    let mut plans = Vec::new();
+    for (name, _) in kicks {
+        plans.push(format!("\"get_ball\", {{ kick = {} }}", toml::Value::from(name.as_str())));
+    }
     let ahead = PointMm::new(scene.defending.attack_sign() * DRIBBLE.of(scene.field.length), 0);
     plans.push(format!(
         "\"get_ball\", {{ dribble_to = {} }}",
@@ -186,7 +186,7 @@ fn point(at: PointMm) -> String {
     format!("[{}, {}]", at.x, at.y)
 }
 
-/// Squared distance, mm².
+/// Squared distance of two points, mm².
 fn square(a: PointMm, b: PointMm) -> i128 {
     let [dx, dy] = [i128::from(a.x) - i128::from(b.x), i128::from(a.y) - i128::from(b.y)];
     dx * dx + dy * dy

@@ -107,7 +107,7 @@ fn parts_merge_to_the_whole_in_any_order() {
 }
 
 #[test]
-fn a_problem_just_outside_a_scope_is_reported_as_one_that_a_larger_scope_would_fill() {
+fn a_problem_just_outside_a_scope_is_counted_as_one_for_wider_scopes() {
     let library = library(&[("center/only", case([0, 0], [500, 400], ""))]);
     let base = library.base();
     let cells = Cells::new(base.field(), 300).expect("a grid");

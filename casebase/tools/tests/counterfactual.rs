@@ -9,7 +9,7 @@ use common::{Dice, PASS_AROUND, library, problem, single};
 use protocol::{CaseId, RobotId};
 
 #[test]
-fn every_move_reported_makes_the_case_win_in_thousands_of_problems() {
+fn every_move_found_makes_the_case_win_in_thousands_of_problems() {
     let settings = RetrievalSettings::default();
     let (mut moves, mut kinds, mut asked) = (0, [0; 3], 0);
     for seed in 0..8 {
@@ -56,7 +56,7 @@ fn every_move_reported_makes_the_case_win_in_thousands_of_problems() {
 /// Both cases cost the distance robot 1 has to walk; `b` is 300 mm farther. By hand: b's place is (300, 0),
 /// a's (0, 0).
 #[test]
-fn the_robot_s_way_is_the_one_found_by_hand() {
+fn the_robots_move_equals_the_one_found_by_hand() {
     let a = single("[0, 0]", "[900, 700]", ", { kick = \"forward\" }");
     let b = a.replace("[[teammates]]\nat = [0, 0]", "[[teammates]]\nat = [300, 0]");
     let library = library(&[("x/a", &a), ("x/b", &b)]);
@@ -84,7 +84,7 @@ fn an_opponent_in_the_leg_is_to_move_by_what_it_stands_inside() {
 }
 
 #[test]
-fn what_no_single_move_mends_is_reported_with_its_reason() {
+fn a_case_that_no_single_move_fixes_gets_a_reason() {
     let library = library(&[("x/pass", PASS_AROUND)]);
     let base = library.base();
     let alone = problem((-600, 0), &[(1, (-700, 0))], &[]);

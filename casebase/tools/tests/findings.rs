@@ -45,7 +45,7 @@ fn the_example_is_sound() {
 }
 
 #[test]
-fn spelling() {
+fn misspelled_case_files_are_errors() {
     expect_error("ball = {", "ball = {{", code::SYNTAX, 3);
     expect_error("defending", "defending = \"yellow\"\ndefending", code::SYNTAX, 3);
     expect_error("intent", "purpose = 1\nintent", code::UNKNOWN_KEY, 1);
@@ -69,7 +69,7 @@ fn spelling() {
 }
 
 #[test]
-fn who_and_how_many() {
+fn robots_that_do_not_exist_or_exceed_the_limits_are_errors() {
     expect_error("pass_ball = 2", "pass_ball = 3", code::ROBOT_NUMBER, 7);
     expect_error("pass_ball = 2", "pass_ball = 0", code::ROBOT_NUMBER, 7);
     expect_error("pass_ball = 2", "pass_ball = 1", code::ROBOT_NUMBER, 7);
@@ -88,7 +88,7 @@ fn who_and_how_many() {
 }
 
 #[test]
-fn what_cannot_be_played() {
+fn plans_that_cannot_be_played_are_errors() {
     expect_error("\"wait\", { receive", "{ kick = \"goal\" }, { receive", code::NOT_HOLDING, 11);
     expect_error("\"wait\", { receive", "{ dribble_to = [0, 0] }, { receive", code::NOT_HOLDING, 11);
     expect_error("{ pass_ball = 2 }", "{ kick = \"goal\" }, { pass_ball = 2 }", code::NOT_HOLDING, 7);
@@ -98,7 +98,7 @@ fn what_cannot_be_played() {
 }
 
 #[test]
-fn places_and_scopes() {
+fn places_outside_the_field_and_empty_scopes_are_errors() {
     expect_error("at = [-600, 0]", "at = [-2701, 0]", code::OUTSIDE_FIELD, 3);
     expect_error("at = [300, 900]", "at = [300, 1801]", code::OUTSIDE_FIELD, 10);
     expect_error("at = [-150, -35]", "at = [-150, -1801]", code::OUTSIDE_FIELD, 14);
@@ -110,7 +110,7 @@ fn places_and_scopes() {
 }
 
 #[test]
-fn the_league() {
+fn league_files_with_wrong_keys_or_values_are_errors() {
     expect_league_error("[field]", "[field", code::SYNTAX, 2);
     expect_league_error("[field]", "name = 1\n[field]", code::UNKNOWN_KEY, 2);
     expect_league_error("width = 3600\n", "", code::MISSING_KEY, 2);
@@ -132,7 +132,7 @@ fn the_league() {
 }
 
 #[test]
-fn every_fault_is_reported_at_once() {
+fn one_run_finds_every_fault() {
     let text = PASS_AROUND
         .replace("\"yellow\"", "\"blue\"")
         .replace("[300, 225]", "[0, 0]")
@@ -144,7 +144,7 @@ fn every_fault_is_reported_at_once() {
 }
 
 #[test]
-fn doubts_do_not_refuse() {
+fn doubtful_cases_get_warnings_and_are_accepted() {
     let with = |old: &str, new: &str| PASS_AROUND.replacen(old, new, 1);
     expect_warning(&with("scope = [450, 250]", "scope = [901, 250]"), code::BIG_SCOPE, 3);
     expect_warning(&with("at = [-150, -35]", "at = [-150, 440]"), code::SCOPE_IN_PATH, 14);
@@ -161,8 +161,8 @@ fn doubts_do_not_refuse() {
     );
     let waits_for_ever = "[[teammates]]\nat = [0, 500]\ngameplay = [\"wait\", \"get_ball\"]\n";
     let dribbles = single("[0, 0]", "[400, 400]", ", { dribble_to = [90, 0] }") + waits_for_ever;
-    let reported = vec![(code::IDLE_BALL, 9), (code::NEVER_REACHED, 9)];
-    assert_eq!(findings(LEAGUE, &[("a/a", &dribbles)]), (reported, false));
+    let expected = vec![(code::IDLE_BALL, 9), (code::NEVER_REACHED, 9)];
+    assert_eq!(findings(LEAGUE, &[("a/a", &dribbles)]), (expected, false));
     let league = LEAGUE.replace("forward_soft", "bicycle");
     assert_eq!(findings(&league, &[("a/a", PASS_AROUND)]), (vec![(code::UNKNOWN_PRIMITIVE, 18)], false));
     assert_eq!(findings(LEAGUE, &[]), (vec![(code::EMPTY, 1)], false));
@@ -194,7 +194,7 @@ fn twins_and_beaten_cases_are_doubtful() {
 }
 
 #[test]
-fn files_out_of_place_or_missing_are_reported() {
+fn misplaced_and_missing_files_are_errors() {
     let root = std::env::temp_dir().join(format!("case-tools-{}", std::process::id()));
     let write = |name: &str, text: &[u8]| {
         let path = root.join(name);

@@ -145,7 +145,7 @@ fn appended(more: &str) -> Finding {
 }
 
 #[test]
-fn no_robot_is_reported() {
+fn a_case_without_robots_is_an_error() {
     let text = "intent = \"x\"\ndefending = \"cyan\"\nball = { at = [0, 0], scope = [9, 9] }\n";
     assert_finding(
         &only(LEAGUE, &[("center/a", text)]),
@@ -157,7 +157,7 @@ fn no_robot_is_reported() {
 }
 
 #[test]
-fn a_fifth_robot_and_a_fifth_opponent_are_reported() {
+fn a_fifth_robot_and_a_fifth_opponent_are_errors() {
     let robots = "\n[[teammates]]\nat = [0, 0]\ngameplay = [\"wait\"]\n".repeat(3);
     assert_finding(&appended(&robots), "test/center/a.toml", 25, code::TOO_MANY_TEAMMATES, "leave out");
     let opponents = "\n[[opponents]]\nat = [0, 1500]\nscope = [9, 9]\n".repeat(4);
@@ -165,7 +165,7 @@ fn a_fifth_robot_and_a_fifth_opponent_are_reported() {
 }
 
 #[test]
-fn a_shot_and_a_pass_beyond_their_reach_are_reported() {
+fn a_shot_and_a_pass_beyond_their_reach_are_errors() {
     let kick = |reach: &str| replaced(LEAGUE, "aim = \"goal\"", &format!("aim = \"goal\"\nreach = {reach}"));
     let cases = [("center/a", PASS_AROUND)];
     // From [300, 900] to the middle of the goal at 2700.
@@ -213,7 +213,7 @@ fn a_name_with_a_blank_is_doubtful() {
 }
 
 #[test]
-fn more_kicks_than_fit_are_reported() {
+fn more_kick_kinds_than_fit_are_an_error() {
     let kind = |i| format!("[kicks.k{i}]\nheading_deg = 0\nlength = 9\nr_min = 1\nr_max = 1\n");
     let kinds = (0..256).map(kind).collect::<Vec<_>>().concat();
     let result = build(&Files::from_texts("test", &format!("{LEAGUE}{kinds}"), &[]));

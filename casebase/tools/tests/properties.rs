@@ -225,7 +225,7 @@ fn no_byte_of_a_table_can_make_it_panic() {
 }
 
 #[test]
-fn a_damaged_table_is_distinguished_from_a_foreign_one() {
+fn a_damaged_table_and_a_foreign_one_give_different_errors() {
     let library = Dice::new(3).library(3);
     let good = library.table.bytes();
     let read = |bytes: &[u8]| CaseBase::from_bytes(Table::aligned(bytes).bytes()).err();
@@ -246,7 +246,7 @@ fn a_damaged_table_is_distinguished_from_a_foreign_one() {
 }
 
 #[test]
-fn a_large_random_library_stays_within_96_bytes_a_stored_case_where_cases_are_as_in_the_paper() {
+fn a_large_random_library_needs_at_most_96_bytes_a_stored_case() {
     // The paper's cases: one robot or two, no opponent or two, a pass or a kick.
     let coop = common::PASS_AROUND;
     let alone = common::single("[100, 200]", "[450, 300]", ", { kick = \"forward\" }");

@@ -79,7 +79,7 @@ fn a_robot_may_travel_exactly_thr_c() {
 }
 
 #[test]
-fn fewer_robots_than_the_case_needs_are_reported() {
+fn too_few_robots_give_the_verdict_robots() {
     let library = library(&[("center/pass-around", PASS_AROUND)]);
     let alone = problem((-600, 0), &[(1, (-700, 0))], &[]);
     assert_eq!(winner(&library, &alone), None);
@@ -183,7 +183,7 @@ fn a_demand_on_a_scope_admits_the_case_with_an_opponent_or_without_alone() {
 }
 
 #[test]
-fn a_leg_of_no_length_blocks_no_one() {
+fn a_leg_of_length_0_is_never_blocked() {
     let text = "intent = \"hand over\"\ndefending = \"yellow\"\nball = { at = [0, 0], scope = [400, 400] }\n\
         [[teammates]]\nat = [-100, 0]\ngameplay = [\"get_ball\", { pass_ball = 2 }]\n\
         [[teammates]]\nat = [0, 0]\ngameplay = [{ receive_ball = 1 }]\n";

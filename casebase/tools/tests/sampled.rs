@@ -21,7 +21,7 @@ fn shot(scope: &str, rest: &str) -> String {
 }
 
 #[test]
-fn a_case_that_another_always_beats_is_reported_with_that_other() {
+fn a_case_that_another_always_beats_gets_a_warning_that_names_it() {
     // Same position, but `candidate` dribbles and has an opponent scope over the whole field: where
     // `shadowed` is a candidate, `candidate` is one with one condition or two more, or by its lower id with
     // the same.
@@ -57,7 +57,7 @@ fn a_case_that_another_always_beats_is_reported_with_that_other() {
 }
 
 #[test]
-fn a_case_that_is_retrieved_now_and_then_is_not_reported() {
+fn a_case_that_is_sometimes_retrieved_gets_no_warning() {
     // Its scope is larger than the rival's: the balls there are its own.
     let everywhere = "[[opponents]]\nat = [0, 0]\nscope = [9000, 9000]\n";
     let candidate = shot("[600, 600]", everywhere).replace("kick = \"forward\"", "dribble_to = [9, 0]");

@@ -59,7 +59,7 @@ fn more_than_four_a_side_leave_out_the_farthest_and_say_so() {
 }
 
 #[test]
-fn what_stands_beyond_the_lines_is_moved_inside_and_said() {
+fn objects_beyond_the_lines_are_moved_inside_with_a_note() {
     let made = draft(&problem((2750, 0), &[(1, (2600, i32::MAX))], &[(i32::MIN, 0)]));
     assert_eq!(made.notes.len(), 3, "{:?}", made.notes);
     assert_eq!(made.findings, []);
@@ -78,7 +78,7 @@ fn with_every_kick_blocked_the_robot_dribbles() {
 }
 
 #[test]
-fn without_a_robot_or_a_league_there_is_none() {
+fn without_a_robot_or_a_league_there_is_no_draft() {
     let rules = |text: &str| Files::from_texts("test", text, &[]).rules;
     assert_eq!(skeleton(&rules(LEAGUE), &problem((0, 0), &[], &[])), Err(SkeletonError::NoTeammate));
     let refused = skeleton(&rules("field = 1"), &problem((0, 0), &[(1, (0, 0))], &[]));

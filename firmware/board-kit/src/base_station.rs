@@ -19,7 +19,7 @@ use protocol::TeamId;
 use protocol::frame::VERSION;
 use protocol::serial::{Line, Lines};
 
-use crate::nrf24::{ChipWires, LOOK, channel, now};
+use crate::nrf24::{ChipWires, IRQ_POLL_PERIOD, channel, now};
 use crate::radio::{UartReceiver, UartSender};
 
 /// Runs until the chip fails: its supply, its wiring, or another chip.
@@ -36,13 +36,13 @@ pub async fn run<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
         Err(fault) => return fault,
     };
     let station = RefCell::new(Station::new(base));
-    let has_news = Cell::new(false);
-    let lines: Queue<NoopRawMutex, Line, LINES> = Queue::new();
+    let has_work = Cell::new(false);
+    let lines: Queue<NoopRawMutex, Line, LINE_QUEUE_LEN> = Queue::new();
     let take = async {
         loop {
             let bytes = from_host.bytes().await;
             station.borrow_mut().push(now(), bytes);
-            has_news.set(true);
+            has_work.set(true);
         }
     };
     let give = async {
@@ -56,20 +56,20 @@ pub async fn run<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
         let mut is_lit = false;
         loop {
             let is_quiet = served.elapsed() < Duration::from_micros(SERVE_EVERY.0);
-            if has_news.take() || !is_quiet || wires.news.is_low().unwrap_or(true) {
+            if has_work.take() || !is_quiet || wires.irq.is_low().unwrap_or(true) {
                 served = Instant::now();
                 let line = station.borrow_mut().poll(now());
                 match line {
                     Ok(Some(line)) => {
                         // A line that does not keep up loses a robot's frame, and the next one says more.
                         let _ = lines.try_send(line);
-                        has_news.set(true);
+                        has_work.set(true);
                     }
                     Ok(None) => {}
                     Err(fault) => break fault,
                 }
             }
-            if blink.elapsed() >= BLINK {
+            if blink.elapsed() >= BLINK_HALF_PERIOD {
                 blink = Instant::now();
                 is_lit = !is_lit;
                 let _ = alive.set_state(is_lit.into());
@@ -81,7 +81,7 @@ pub async fn run<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
                     counts.late
                 );
             }
-            Timer::after(LOOK).await;
+            Timer::after(IRQ_POLL_PERIOD).await;
         }
     };
     // Only the chip's part ends.
@@ -105,6 +105,6 @@ async fn first_team(from_host: &mut UartReceiver<impl Read>) -> TeamId {
 }
 
 /// Robots' frames that wait for the line: a beacon of each robot of the largest team.
-const LINES: usize = 12;
+const LINE_QUEUE_LEN: usize = 12;
 /// Half of the lamp's period of a second.
-const BLINK: Duration = Duration::from_millis(500);
+const BLINK_HALF_PERIOD: Duration = Duration::from_millis(500);

@@ -1,5 +1,5 @@
 //! `bring_up`: plays the checks of a robot's first start ([`runtime::bring_up`]) on a board, logs what each
-//! found and what to look at, and tells it to the host by radio (`onetwo robot bring-up`).
+//! found and what to look at, and reports it to the host by radio (`onetwo robot bring-up`).
 
 use core::cell::{Cell, RefCell};
 
@@ -19,7 +19,7 @@ use crate::robot::Identity;
 use crate::sampling::{self, AnalogInputs, Probes};
 
 /// Plays all checks, then leaves the motors without current. The robot on a stand, wheels off the ground, the
-/// kicker's board unplugged: nothing here charges. A robot that has its page tells the results to its host
+/// kicker's board unplugged: nothing here charges. A robot that has its page reports the results to its host
 /// for as long as it runs; without it they are on the log alone, and this ends.
 pub async fn run(
     wheels: impl WheelsPort,
@@ -28,32 +28,32 @@ pub async fn run(
     analog: impl AnalogInputs,
     who: Option<Identity>,
 ) {
-    let heard = Cell::new(Listener::default());
+    let listener = Cell::new(Listener::default());
     let results = who.map(|who| {
         let (team, robot, epoch) = (who.config.team, who.config.robot, who.config.epoch);
         RefCell::new(Results::new(Reporter { team, robot, key: who.keys.host, epoch }))
     });
     if results.is_none() {
-        defmt::warn!("no host is told: the results are on this log alone");
+        defmt::warn!("no report to a host: the results are on this log alone");
     }
-    let tells = async {
+    let reports = async {
         if let Some(results) = &results {
-            tell(sender, results, &heard).await;
+            report(sender, results, &listener).await;
         }
     };
-    let plays = join(checks(wheels, &heard, results.as_ref()), tells);
-    select3(plays, hear(receiver, &heard), sampling::run(gyroscope, analog)).await;
+    let plays = join(checks(wheels, &listener, results.as_ref()), reports);
+    select3(plays, receive(receiver, &listener), sampling::run(gyroscope, analog)).await;
 }
 
-/// Tells the host how the checks stand, for ever.
-async fn tell(mut sender: impl RadioSender, results: &RefCell<Results>, heard: &Cell<Listener>) {
+/// Reports the state of the checks to the host, for ever.
+async fn report(mut sender: impl RadioSender, results: &RefCell<Results>, listener: &Cell<Listener>) {
     let mut ticker = Ticker::every(Duration::from_micros(REPORT_EVERY.0));
     loop {
         ticker.next().await;
         // Both borrows end before anything waits.
         let packet = results.try_borrow_mut().ok().and_then(|mut results| {
             let team = results.team();
-            results.packet(heard.get().host_epoch(team))
+            results.packet(listener.get().host_epoch(team))
         });
         if let Some(packet) = packet {
             sender.send(packet).await;
@@ -61,21 +61,21 @@ async fn tell(mut sender: impl RadioSender, results: &RefCell<Results>, heard: &
     }
 }
 
-async fn hear(mut receiver: impl RadioReceiver, heard: &Cell<Listener>) -> ! {
+async fn receive(mut receiver: impl RadioReceiver, listener: &Cell<Listener>) -> ! {
     loop {
         let packet = receiver.receive().await;
-        let mut listener = heard.get();
-        listener.hear(&packet);
-        heard.set(listener);
+        let mut counted = listener.get();
+        counted.receive(&packet);
+        listener.set(counted);
     }
 }
 
-async fn checks(mut wheels: impl WheelsPort, heard: &Cell<Listener>, results: Option<&RefCell<Results>>) {
+async fn checks(mut wheels: impl WheelsPort, listener: &Cell<Listener>, results: Option<&RefCell<Results>>) {
     let mut ticker = Ticker::every(Duration::from_micros(CONTROL_PERIOD.0));
     let (mut list, mut shown, mut failed) = (BringUp::new(), None, 0_u8);
     loop {
         ticker.next().await;
-        let radio = heard.get().counts(radio::noise());
+        let radio = listener.get().counts(radio::line_errors());
         let step = list.step(now(), &Reading { rims: wheels.measured(), seen: Probes.look(), radio });
         match step.motors {
             Motors::Driven(duty) => wheels.drive(duty, 0.0),

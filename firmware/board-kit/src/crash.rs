@@ -23,14 +23,14 @@ pub struct CrashRecord {
     pub boots: u32,
     /// Panics and faults since then.
     pub panics: u32,
-    /// Whether the watchdog ended the last boot epoch.
+    /// True if the watchdog ended the last boot epoch.
     pub bitten: bool,
     place: [u8; PLACE_LEN_MAX],
     place_len: usize,
 }
 
 impl CrashRecord {
-    /// Counts this start; call once. `bitten` is what the chip says of its last reset.
+    /// Counts this start; call once. `bitten`: the watchdog caused the last reset.
     pub fn begin(words: &mut impl KeptWords, bitten: bool) -> Self {
         if words.read(MAGIC_AT) != MAGIC {
             for n in 0..len(words) {
@@ -40,8 +40,8 @@ impl CrashRecord {
         }
         words.write(BOOTS_AT, words.read(BOOTS_AT).wrapping_add(1));
         let mut place = [0; PLACE_LEN_MAX];
-        for (n, label) in (PLACE_AT..len(words)).zip(place.as_chunks_mut::<4>().0) {
-            *label = words.read(n).to_le_bytes();
+        for (n, bytes) in (PLACE_AT..len(words)).zip(place.as_chunks_mut::<4>().0) {
+            *bytes = words.read(n).to_le_bytes();
         }
         Self {
             boots: words.read(BOOTS_AT),
@@ -74,13 +74,13 @@ impl KeptPlace {
         let room = 4 * len(words).saturating_sub(PLACE_AT);
         let len = place.get_mut(..room).map_or(0, |room| how.write(room));
         words.write(LEN_AT, len as u32);
-        for (n, label) in (PLACE_AT..self::len(words)).zip(place.as_chunks::<4>().0) {
-            words.write(n, u32::from_le_bytes(*label));
+        for (n, bytes) in (PLACE_AT..self::len(words)).zip(place.as_chunks::<4>().0) {
+            words.write(n, u32::from_le_bytes(*bytes));
         }
         Self { place, len }
     }
 
-    /// As text, for the log.
+    /// Text of the place, for the log.
     pub fn text(&self) -> &str {
         core::str::from_utf8(self.place.get(..self.len).unwrap_or_default()).unwrap_or_default()
     }
@@ -88,6 +88,7 @@ impl KeptPlace {
 
 /// The words in use: more than [`WORDS_MAX`] are left alone.
 fn len<W: KeptWords>(_: &W) -> usize {
+    const { assert!(W::WORDS >= KEPT_WORDS_MIN, "too few words for a crash record") };
     W::WORDS.min(WORDS_MAX)
 }
 
@@ -98,7 +99,7 @@ const LEN_AT: usize = 3;
 const PLACE_AT: usize = 4;
 /// The four counters and room for a short place, 16 bytes.
 pub const KEPT_WORDS_MIN: usize = PLACE_AT + 4;
-/// As many as an STM32H7 has (RM0433, 46.6.20).
+/// Largest number of words in use: that of an STM32H7 (RM0433, 46.6.20).
 const WORDS_MAX: usize = 32;
 /// Bytes of a place that are kept at most.
 const PLACE_LEN_MAX: usize = 4 * (WORDS_MAX - PLACE_AT);

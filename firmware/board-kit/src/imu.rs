@@ -10,7 +10,7 @@ pub trait Gyroscope {
     /// Reads its identification and starts it.
     async fn start(&mut self) -> Result<(), ImuError>;
 
-    /// The newest reading.
+    /// Reads the newest measurement.
     fn reading(&mut self) -> Result<Reading, ImuError>;
 }
 
@@ -21,17 +21,17 @@ pub struct Imu<B, S> {
     select: S,
 }
 
-/// Why a reading is missing.
+/// Reason why a reading is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(target_os = "none", derive(defmt::Format))]
 pub enum ImuError {
     /// An SPI transfer ended with an error.
     Bus,
     /// Another chip answers, or none (0x00, 0xff): this value instead of 0x47.
-    Unauthenticated(u8),
+    WrongChip(u8),
     /// The data line never changes: the sensor is unplugged, or without supply.
     Silent,
-    /// There is none on this board.
+    /// No sensor is on this board.
     NotWired,
 }
 
@@ -58,7 +58,7 @@ impl<B: SpiBus, S: OutputPin> Imu<B, S> {
     fn read<const N: usize>(&mut self, register: u8) -> Result<[u8; N], ImuError> {
         let mut bytes = [0; N];
         self.selected(|bus| {
-            bus.write(&[register | READ])?;
+            bus.write(&[register | READ_BIT])?;
             bus.transfer_in_place(&mut bytes)
         })?;
         Ok(bytes)
@@ -80,8 +80,8 @@ impl<B: SpiBus, S: OutputPin> Gyroscope for Imu<B, S> {
         // After a reset it needs a millisecond.
         Timer::after_millis(2).await;
         let [name] = self.read(WHO_AM_I)?;
-        if name != NAME {
-            return Err(ImuError::Unauthenticated(name));
+        if name != ICM_42688_P {
+            return Err(ImuError::WrongChip(name));
         }
         self.write(GYRO_CONFIG0, RATE_1_KHZ)?;
         self.write(ACCEL_CONFIG0, RATE_1_KHZ)?;
@@ -100,8 +100,8 @@ impl<B: SpiBus, S: OutputPin> Gyroscope for Imu<B, S> {
         }
         let [ax, ay, az, gx, gy, gz] = numbers(raw);
         Ok(Reading {
-            acceleration: [ax, ay, az].map(|raw| f32::from(raw) * G_A_STEP),
-            rate: [gx, gy, gz].map(|raw| f32::from(raw) * RAD_A_STEP),
+            acceleration: [ax, ay, az].map(|raw| f32::from(raw) * G_PER_STEP),
+            rate: [gx, gy, gz].map(|raw| f32::from(raw) * RAD_PER_STEP),
         })
     }
 }
@@ -115,18 +115,18 @@ fn numbers(raw: [u8; 12]) -> [i16; 6] {
     numbers
 }
 
-const READ: u8 = 0x80;
+const READ_BIT: u8 = 0x80;
 const DEVICE_CONFIG: u8 = 0x11;
 const ACCEL_DATA: u8 = 0x1f;
 const PWR_MGMT0: u8 = 0x4e;
 const GYRO_CONFIG0: u8 = 0x4f;
 const ACCEL_CONFIG0: u8 = 0x50;
 const WHO_AM_I: u8 = 0x75;
-const NAME: u8 = 0x47;
+const ICM_42688_P: u8 = 0x47;
 /// The widest range, and 1 kHz.
 const RATE_1_KHZ: u8 = 0x06;
 const BOTH_LOW_NOISE: u8 = 0x0f;
 /// 2,048 steps a g.
-const G_A_STEP: f32 = 1.0 / 2048.0;
+const G_PER_STEP: f32 = 1.0 / 2048.0;
 /// 16.4 steps for a degree a second.
-const RAD_A_STEP: f32 = core::f32::consts::PI / 180.0 / 16.4;
+const RAD_PER_STEP: f32 = core::f32::consts::PI / 180.0 / 16.4;

@@ -18,7 +18,7 @@ pub trait LedgerFlash {
     fn write(&mut self, at: CounterPlace, epoch: u32) -> bool;
 }
 
-/// Why no epoch is available.
+/// Reason why no epoch is available.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CounterError {
     /// All 2³² epochs are used.
@@ -30,7 +30,7 @@ pub enum CounterError {
 /// Records this start: its epoch, larger than all before. Seconds where a half has to be erased, once in
 /// [`LedgerFlash::CELLS`] starts.
 pub fn begin<F: LedgerFlash>(flash: &mut F) -> Result<u32, CounterError> {
-    for _ in 0..TRIES {
+    for _ in 0..WRITE_ATTEMPTS {
         let plan = persistent_counter::plan(F::CELLS, |at| flash.read(at)).ok_or(CounterError::Full)?;
         let erased = !plan.erase || flash.erase(plan.at.half);
         let written = erased && flash.write(plan.at, plan.epoch);
@@ -42,7 +42,7 @@ pub fn begin<F: LedgerFlash>(flash: &mut F) -> Result<u32, CounterError> {
 }
 
 /// Number of attempts: a cell that does not keep its value is skipped.
-const TRIES: usize = 3;
+const WRITE_ATTEMPTS: usize = 3;
 
 #[cfg(test)]
 mod tests {

@@ -23,14 +23,14 @@ impl MotorDrivers for NotWired {
 
     fn release(&mut self) {}
 
-    /// Nothing can be driven.
+    /// Always a fault: no motor can be driven.
     fn has_fault(&mut self) -> bool {
         true
     }
 }
 
 impl EncoderCounts for NotWired {
-    const RIM_A_COUNT: f32 = 0.0;
+    const RIM_PER_COUNT: f32 = 0.0;
 
     fn counts(&self) -> [u16; WHEELS] {
         [0; WHEELS]
@@ -86,7 +86,7 @@ impl ports::RadioSender for NotWired {
 }
 
 impl ports::Watchdog for NotWired {
-    const PATIENCE: protocol::Duration = protocol::Duration::millis(100);
+    const TIMEOUT: protocol::Duration = protocol::Duration::millis(100);
 
     fn feed(&mut self) {}
 }
@@ -115,7 +115,7 @@ mod tests {
     use runtime::kicker::Interlock;
 
     #[test]
-    fn what_is_not_wired_never_fires_and_counts_as_broken() {
+    fn parts_that_are_not_wired_never_fire_and_count_as_broken() {
         let mut interlock = Interlock::new();
         for ms in 0..100 {
             let act = interlock.step(Instant(1000 * ms), OmniKick::Flat(6.0), NotWired.state());

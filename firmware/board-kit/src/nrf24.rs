@@ -12,8 +12,8 @@ use protocol::link::Packet;
 use protocol::{RobotId, TeamId};
 use runtime::ports::{RadioReceiver, RadioSender};
 
-/// A team's channel, so that base station and robots agree without being told: 2 Mbit/s at 2,402 MHz and
-/// 4 MHz more for each team number, which stays below 2,480 MHz.
+/// A team's channel, by which base station and robots agree without a setting: 2 Mbit/s at 2,402 MHz and 4 MHz
+/// more for each team number, which stays below 2,480 MHz.
 pub fn channel(team: TeamId) -> Channel {
     Channel { team, megahertz: 2 + 4 * (team.0 % 20), rate: Rate::Mbps2 }
 }
@@ -26,24 +26,24 @@ pub fn now() -> protocol::Instant {
 /// Wires of a chip, besides its supply.
 #[derive(Debug)]
 pub struct ChipWires<S, E, N, D> {
-    /// Its bus, with its own select.
+    /// SPI bus with the chip's own select.
     pub spi: S,
-    /// CE.
+    /// CE: high while the radio listens or sends.
     pub enable: E,
     /// IRQ, low when there is something to do.
-    pub news: N,
-    /// Pauses of microseconds.
+    pub irq: N,
+    /// Timer for pauses of microseconds.
     pub pause: D,
 }
 
 /// Frames that wait for the chip.
-static OUT: Queue<CriticalSectionRawMutex, Packet, 4> = Queue::new();
+static OUTGOING: Queue<CriticalSectionRawMutex, Packet, 4> = Queue::new();
 
 /// A robot's radio: serves the chip, and receives.
 #[allow(missing_debug_implementations, reason = "the chip's driver has none")]
 pub struct ChipReceiver<S, E, N, D> {
     robot: Robot<S, E, D>,
-    news: N,
+    irq: N,
     served: Instant,
 }
 
@@ -60,21 +60,21 @@ pub fn robot<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
     number: RobotId,
     wires: ChipWires<S, E, N, D>,
 ) -> Result<ChipRadio<S, E, N, D>, Fault> {
-    let robot = Robot::start(now(), channel(team), number, wires.spi, wires.enable, wires.pause)?;
-    Ok((ChipSender(()), ChipReceiver { robot, news: wires.news, served: Instant::now() }))
+    let robot = Robot::start(now(), channel(team), number, (wires.spi, wires.enable, wires.pause))?;
+    Ok((ChipSender(()), ChipReceiver { robot, irq: wires.irq, served: Instant::now() }))
 }
 
 impl RadioSender for ChipSender {
     async fn send(&mut self, packet: Packet) {
-        OUT.send(packet).await;
+        OUTGOING.send(packet).await;
     }
 }
 
 impl<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs> RadioReceiver for ChipReceiver<S, E, N, D> {
     async fn receive(&mut self) -> Packet {
         loop {
-            let mut is_due = is_due(&mut self.news, self.served);
-            while let Ok(packet) = OUT.try_receive() {
+            let mut is_due = is_due(&mut self.irq, self.served);
+            while let Ok(packet) = OUTGOING.try_receive() {
                 // No frame, or no room: counted there, and a newer one follows.
                 let _ = self.robot.send(now(), &packet);
                 is_due = true;
@@ -85,20 +85,20 @@ impl<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs> RadioReceiver for Chip
                     Ok(Some(packet)) => return packet,
                     Ok(None) => {}
                     // The chip's supply dipped, or a wire is loose: its next turn starts it again.
-                    Err(_) => Timer::after(REST).await,
+                    Err(_) => Timer::after(FAULT_PAUSE).await,
                 }
             }
-            Timer::after(LOOK).await;
+            Timer::after(IRQ_POLL_PERIOD).await;
         }
     }
 }
 
-/// Whether the chip has to be served. A line that cannot be read is served as if it said something.
-fn is_due(news: &mut impl InputPin, served: Instant) -> bool {
-    news.is_low().unwrap_or(true) || served.elapsed() >= Duration::from_micros(SERVE_EVERY.0)
+/// Tells whether the chip has to be served. A line that cannot be read counts as low.
+fn is_due(irq: &mut impl InputPin, served: Instant) -> bool {
+    irq.is_low().unwrap_or(true) || served.elapsed() >= Duration::from_micros(SERVE_EVERY.0)
 }
 
-/// The wire IRQ is looked at this often: a fifth of the shortest exchange at 2 Mbit/s.
-pub const LOOK: Duration = Duration::from_micros(100);
-/// After a fault, before the chip is served again.
-pub const REST: Duration = Duration::from_millis(10);
+/// Period in which the wire IRQ is read: a fifth of the shortest exchange at 2 Mbit/s.
+pub const IRQ_POLL_PERIOD: Duration = Duration::from_micros(100);
+/// Pause after a fault before the chip is served again.
+pub const FAULT_PAUSE: Duration = Duration::from_millis(10);

@@ -14,29 +14,29 @@ use runtime::ports::{RadioReceiver, RadioSender};
 pub struct UartReceiver<R> {
     rx: R,
     lines: Lines,
-    came: [u8; CHUNK],
-    /// Range of `came` that is not yet decoded.
+    received: [u8; READ_LEN_MAX],
+    /// Range of `received` that is not yet decoded.
     rest: (usize, usize),
 }
 
 impl<R: Read> UartReceiver<R> {
-    /// Nothing received yet.
+    /// A receiver before its first byte.
     pub fn new(rx: R) -> Self {
-        Self { rx, lines: Lines::new(), came: [0; CHUNK], rest: (0, 0) }
+        Self { rx, lines: Lines::new(), received: [0; READ_LEN_MAX], rest: (0, 0) }
     }
 
     /// Received bytes, as they arrive.
     pub async fn bytes(&mut self) -> &[u8] {
         let len = loop {
-            if let Ok(len) = self.rx.read(&mut self.came).await {
+            if let Ok(len) = self.rx.read(&mut self.received).await {
                 break len;
             }
             // An error of a line that is unplugged or set to another rate. Reception continues with the next
             // read, but endless noise must not take the other tasks' time.
-            NOISE.store(noise().wrapping_add(1), Ordering::Relaxed);
-            Timer::after(REST).await;
+            LINE_ERRORS.store(line_errors().wrapping_add(1), Ordering::Relaxed);
+            Timer::after(ERROR_PAUSE).await;
         };
-        self.came.get(..len).unwrap_or_default()
+        self.received.get(..len).unwrap_or_default()
     }
 }
 
@@ -44,7 +44,7 @@ impl<R: Read> RadioReceiver for UartReceiver<R> {
     async fn receive(&mut self) -> Packet {
         loop {
             let (from, to) = self.rest;
-            let rest = self.came.get(from..to).unwrap_or_default();
+            let rest = self.received.get(from..to).unwrap_or_default();
             for (read, byte) in (from + 1..).zip(rest) {
                 if let Some(packet) = self.lines.push(*byte) {
                     self.rest = (read, to);
@@ -78,7 +78,7 @@ impl<W: Write> UartSender<W> {
         while !rest.is_empty() {
             let taken = self.tx.write(rest).await.unwrap_or(0);
             if taken == 0 {
-                NOISE.store(noise().wrapping_add(1), Ordering::Relaxed);
+                LINE_ERRORS.store(line_errors().wrapping_add(1), Ordering::Relaxed);
                 return;
             }
             rest = rest.get(taken..).unwrap_or_default();
@@ -93,18 +93,18 @@ impl<W: Write> RadioSender for UartSender<W> {
     }
 }
 
-/// Number of line errors: framing, overrun, noise.
-pub fn noise() -> u32 {
-    NOISE.load(Ordering::Relaxed)
+/// Number of line errors: framing, overrun, line_errors.
+pub fn line_errors() -> u32 {
+    LINE_ERRORS.load(Ordering::Relaxed)
 }
 
-static NOISE: AtomicU32 = AtomicU32::new(0);
+static LINE_ERRORS: AtomicU32 = AtomicU32::new(0);
 /// Rate of the line to the radio, bit/s.
 pub const BAUD: u32 = RobotSpec::OURS.parts.baud;
 /// Bytes received in 5 ms; half of it raises the interrupt. The brain's longest step takes a fifth of a
 /// millisecond at 400 MHz.
 pub const RING_LEN: usize = 512;
-/// After an error, before it listens again: shorter than the pause between two of the host's snapshots.
-const REST: Duration = Duration::from_millis(1);
+/// Pause after a line error: shorter than that between two of the host's snapshots.
+const ERROR_PAUSE: Duration = Duration::from_millis(1);
 /// Bytes read in one call.
-const CHUNK: usize = 64;
+const READ_LEN_MAX: usize = 64;

@@ -20,19 +20,19 @@ use crate::not_wired::NotWired;
 use crate::radio;
 use crate::sampling::{self, AnalogInputs};
 
-/// What a board has, part by part; the requirements stand at each trait.
+/// Parts of a board; the requirements stand at each trait.
 pub trait Board {
     /// Four wheels and the dribbler, mostly [`Wheels`](crate::wheels::Wheels).
     type Wheels: WheelsPort + 'static;
     /// The kicker's charger and coils.
     type Kicker: Kicker + 'static;
-    /// The gyroscope.
+    /// The gyroscope and accelerometer.
     type Gyroscope: Gyroscope + 'static;
     /// Battery, capacitor and break-beam sensor.
     type Analog: AnalogInputs + 'static;
-    /// The radio's sender.
+    /// Sending half of the radio.
     type Sender: RadioSender + 'static;
-    /// The radio's receiver.
+    /// Receiving half of the radio.
     type Receiver: RadioReceiver + 'static;
     /// The watchdog, which runs already.
     type Watchdog: Watchdog + 'static;
@@ -49,31 +49,31 @@ pub struct BoardParts<B: Board> {
     pub kicker: B::Kicker,
     /// The gyroscope, not started yet.
     pub gyroscope: B::Gyroscope,
-    /// Measured voltages.
+    /// Battery, capacitor and break-beam sensor.
     pub analog: B::Analog,
-    /// The radio's sender.
+    /// Sending half of the radio.
     pub sender: B::Sender,
-    /// The radio's receiver.
+    /// Receiving half of the radio.
     pub receiver: B::Receiver,
     /// The watchdog; started last, because a start may take seconds.
     pub watchdog: B::Watchdog,
-    /// The lamp.
+    /// Lamp that blinks as long as the robot runs.
     pub alive: B::Lamp,
 }
 
-/// Who a robot is and which start this is.
+/// Identity of a robot, and number of this start.
 #[derive(Clone)]
 #[allow(missing_debug_implementations, reason = "keys must not be printed")]
 pub struct Identity {
     /// Configuration of its brain.
     pub config: BrainConfig,
-    /// Its keys.
+    /// Keys with the host and with teammates.
     pub keys: RobotKeys,
 }
 
 impl Identity {
-    /// Without an identity: keys of zeros, for a board that has no page yet. Only for one without a radio:
-    /// with keys that are public, any sender could command it.
+    /// Identity of keys of zeros, for a board that has no page yet. Only for one without a radio: with keys
+    /// that are public, any sender could command it.
     pub fn unprovisioned<B: Board<Sender = NotWired, Receiver = NotWired>>() -> Self {
         let config = BrainConfig::hosted(RobotId::ZERO, TeamId(0), League::DivisionB);
         let keys = TeamKey::ZERO.of_robot(config.robot);
@@ -127,7 +127,7 @@ pub fn log_not_wired(part: &str) {
 
 /// Blinks, and reports the board's state each second.
 pub async fn report(mut alive: impl OutputPin, boxes: &Mailboxes) -> ! {
-    let mut ticker = Ticker::every(BLINK);
+    let mut ticker = Ticker::every(BLINK_HALF_PERIOD);
     loop {
         // A lamp that cannot be switched is no reason to stop.
         let _ = alive.set_high();
@@ -137,7 +137,7 @@ pub async fn report(mut alive: impl OutputPin, boxes: &Mailboxes) -> ! {
         defmt::debug!(
             "{}; line errors {=u32}, unsent {=u32}, undelivered {=u32}",
             sampling::newest(),
-            radio::noise(),
+            radio::line_errors(),
             boxes.unsent(),
             boxes.undelivered()
         );
@@ -145,7 +145,7 @@ pub async fn report(mut alive: impl OutputPin, boxes: &Mailboxes) -> ! {
 }
 
 /// Half of the lamp's period of a second.
-const BLINK: Duration = Duration::from_millis(500);
+const BLINK_HALF_PERIOD: Duration = Duration::from_millis(500);
 
 /// Declares the tasks of a robot (embassy's tasks cannot be generic) and `run`, which starts them and never
 /// returns. `$board` implements [`Board`](crate::robot::Board); `$executor` is the executor, taken once.
@@ -158,7 +158,7 @@ macro_rules! robot_tasks {
         static BOXES: $crate::runtime::Mailboxes = $crate::runtime::Mailboxes::new();
         static WIRES: $crate::runtime::hardware::Wires = $crate::runtime::hardware::Wires::new();
 
-        /// Starts all tasks.
+        /// Starts all tasks of the robot.
         fn run(
             spawner: $crate::embassy_executor::Spawner,
             who: $crate::robot::Identity,

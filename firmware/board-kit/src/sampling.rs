@@ -10,7 +10,7 @@ use embassy_sync::blocking_mutex::CriticalSectionMutex;
 use embassy_time::{Duration, Instant, Ticker};
 use runtime::kicker::{FULL_VOLTS, KickerState};
 use runtime::ports::{self, Seen};
-use runtime::sense::{BreakBeam, Tilt, Turn};
+use runtime::sense::{BreakBeam, GyroOffset, Tilt};
 
 use crate::imu::{Gyroscope, ImuError};
 
@@ -50,7 +50,7 @@ impl SensorSample {
     const NONE: Self =
         Self { turn: None, tipped: false, ball: false, battery: f32::NAN, capacitor: f32::NAN };
 
-    /// As the kicker's interlock needs it.
+    /// State that the kicker's interlock needs.
     pub fn kicker(&self) -> KickerState {
         KickerState { ball: self.ball, volts: self.capacitor }
     }
@@ -60,19 +60,19 @@ impl SensorSample {
 /// the robot.
 pub fn newest() -> SensorSample {
     let (at, sample) = NEWEST.lock(Cell::get);
-    if at.elapsed() < STALE { sample } else { SensorSample::NONE }
+    if at.elapsed() < SAMPLE_AGE_MAX { sample } else { SensorSample::NONE }
 }
 
 /// Reads everything, for ever. A gyroscope that does not answer is reported and tried again each second;
 /// until then the turning rate comes from the wheels.
 pub async fn run(mut imu: impl Gyroscope, mut analog: impl AnalogInputs) -> ! {
-    let (mut turn, mut tilt, mut break_beam) = (Turn::new(), Tilt::new(), BreakBeam::new());
+    let (mut turn, mut tilt, mut break_beam) = (GyroOffset::new(), Tilt::new(), BreakBeam::new());
     let mut answers = false;
     let mut lit = false;
-    let mut ticker = Ticker::every(STEP);
+    let mut ticker = Ticker::every(SAMPLING_PERIOD);
     let mut asked = Instant::MIN;
     loop {
-        if !answers && (asked == Instant::MIN || asked.elapsed() >= ASKED_AGAIN) {
+        if !answers && (asked == Instant::MIN || asked.elapsed() >= START_RETRY_PERIOD) {
             asked = Instant::now();
             match imu.start().await {
                 Ok(()) => answers = true,
@@ -88,10 +88,10 @@ pub async fn run(mut imu: impl Gyroscope, mut analog: impl AnalogInputs) -> ! {
         }
         let now = Instant::now();
         let sample = SensorSample {
-            turn: reading.ok().and_then(|reading| turn.step(reading.rate[UP])),
+            turn: reading.ok().and_then(|reading| turn.step(reading.rate[UP_AXIS])),
             tipped: tilt.step(
                 protocol::Instant(now.as_micros()),
-                reading.map_or(f32::NAN, |reading| reading.acceleration[UP]),
+                reading.map_or(f32::NAN, |reading| reading.acceleration[UP_AXIS]),
             ),
             ball: break_beam.step(lit, analog.break_beam()),
             battery: analog.battery(),
@@ -106,7 +106,7 @@ pub async fn run(mut imu: impl Gyroscope, mut analog: impl AnalogInputs) -> ! {
 /// Logs a missing reading.
 fn report(error: ImuError) {
     #[cfg(target_os = "none")]
-    defmt::warn!("no gyroscope: {}; the wheels tell how the robot turns", error);
+    defmt::warn!("no gyroscope: {}; the turning rate comes from the wheels", error);
     #[cfg(not(target_os = "none"))]
     let _ = error;
 }
@@ -125,10 +125,10 @@ impl ports::Probes for Probes {
 static NEWEST: CriticalSectionMutex<Cell<(Instant, SensorSample)>> =
     CriticalSectionMutex::new(Cell::new((Instant::MIN, SensorSample::NONE)));
 /// Sampling period, that of the control loop.
-const STEP: Duration = Duration::from_millis(1);
+const SAMPLING_PERIOD: Duration = Duration::from_millis(1);
 /// Maximum age of a sample: ten steps.
-const STALE: Duration = Duration::from_millis(10);
+const SAMPLE_AGE_MAX: Duration = Duration::from_millis(10);
 /// Period in which a silent sensor is tried again.
-const ASKED_AGAIN: Duration = Duration::from_secs(1);
-/// Index of the sensor's axis that points up when it lies flat on the board.
-const UP: usize = 2;
+const START_RETRY_PERIOD: Duration = Duration::from_secs(1);
+/// Index of the accelerometer's axis that points up on a board that lies flat.
+const UP_AXIS: usize = 2;

@@ -11,7 +11,7 @@ use crate::motors::MotorDrivers;
 pub trait EncoderCounts {
     /// Distance of the rim for a count, m; negative where it counts down when the wheel turns the robot
     /// counter-clockwise.
-    const RIM_A_COUNT: f32;
+    const RIM_PER_COUNT: f32;
 
     /// Counts in the order of the wheels on the wire (front right, back right, back left, front left); they
     /// wrap.
@@ -30,7 +30,7 @@ pub struct Wheels<M, E> {
 impl<M: MotorDrivers, E: EncoderCounts> Wheels<M, E> {
     /// Wheels with all motors without current.
     pub fn new(drivers: M, encoders: E) -> Self {
-        Self { drivers, encoders, speeds: [Encoder::new(E::RIM_A_COUNT); WHEELS], duty: [0.0; WHEELS] }
+        Self { drivers, encoders, speeds: [Encoder::new(E::RIM_PER_COUNT); WHEELS], duty: [0.0; WHEELS] }
     }
 
     /// Counts of the encoders; they wrap.

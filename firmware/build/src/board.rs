@@ -7,9 +7,9 @@
 /// A board: the package, and what its firmware is for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Board {
-    /// Its directory in `firmware/boards`, which is its name in options.
+    /// Name in options: that of its directory in `firmware/boards`.
     pub name: String,
-    /// Its package.
+    /// Name of its package.
     pub package: String,
     /// The chip: as `probe-rs chip list` names it, or the emulated machine.
     pub chip: String,
@@ -51,33 +51,35 @@ impl Board {
         let package = table.get("package").ok_or_else(|| wrong("no table `[package]`".into()))?;
         let board = package.get("metadata").and_then(|metadata| metadata.get("board"));
         let board = board.ok_or_else(|| wrong("no table `[package.metadata.board]`".into()))?;
-        let text = |of: &toml::Value, key: &str| {
-            let value = of.get(key).and_then(toml::Value::as_str);
-            value.map(str::to_owned).ok_or_else(|| wrong(format!("`{key}` is missing, or no text")))
-        };
-        let number = |key: &str| {
-            let value = board.get(key).and_then(toml::Value::as_integer);
-            let value = value.and_then(|value| u32::try_from(value).ok());
-            value.ok_or_else(|| wrong(format!("`{key}` is missing, or no number of 32 bits")))
-        };
         let firmware = match board.get("image") {
             None => None,
             Some(_) => Some(BoardFirmware {
-                image: text(board, "image")?,
+                image: text(board, "image").map_err(wrong)?,
                 more: names(board.get("more")).ok_or_else(|| wrong("`more` is no list of names".into()))?,
-                flash: number("flash")?.into(),
-                ram: number("ram")?.into(),
-                page: number("page")?,
+                flash: number(board, "flash").map_err(wrong)?.into(),
+                ram: number(board, "ram").map_err(wrong)?.into(),
+                page: number(board, "page").map_err(wrong)?,
             }),
         };
         Ok(Self {
             name: name.to_owned(),
-            package: text(package, "name")?,
-            chip: text(board, "chip")?,
-            target: text(board, "target")?,
+            package: text(package, "name").map_err(wrong)?,
+            chip: text(board, "chip").map_err(wrong)?,
+            target: text(board, "target").map_err(wrong)?,
             firmware,
         })
     }
+}
+
+fn text(table: &toml::Value, key: &str) -> Result<String, String> {
+    let value = table.get(key).and_then(toml::Value::as_str);
+    value.map(str::to_owned).ok_or_else(|| format!("`{key}` is missing, or no text"))
+}
+
+fn number(table: &toml::Value, key: &str) -> Result<u32, String> {
+    let value = table.get(key).and_then(toml::Value::as_integer);
+    let value = value.and_then(|value| u32::try_from(value).ok());
+    value.ok_or_else(|| format!("`{key}` is missing, or no number of 32 bits"))
 }
 
 /// A list of texts; an empty one where there is none.

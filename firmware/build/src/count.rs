@@ -70,13 +70,13 @@ pub fn write_between(file: &str, name: &str, table: &str) -> Result<(), String> 
     let file = workspace_root().join(file);
     let wrong = |error| format!("{}: {error}", file.display());
     let text = fs::read_to_string(&file).map_err(wrong)?;
-    let missing = || {
-        format!(
+    let Some(text) = between(&text, name, table) else {
+        return Err(format!(
             "{} has no marks for the table: `<!-- {name} -->` and `<!-- end of {name} -->`",
             file.display()
-        )
+        ));
     };
-    fs::write(&file, between(&text, name, table).ok_or_else(missing)?).map_err(wrong)
+    fs::write(&file, text).map_err(wrong)
 }
 
 /// The text with what stands between the marks of that name replaced; `None` where a mark is missing.

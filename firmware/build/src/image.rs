@@ -3,7 +3,6 @@
 //! cargo itself decides on freshness: an up-to-date image costs one short call without output.
 
 use std::env;
-use std::fmt;
 use std::io::{BufRead, BufReader, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
@@ -21,14 +20,15 @@ pub fn build_image(root: &Path, body: ImageBody) -> Result<PathBuf, BuildError> 
     build_program(root, Program::Robot(body))
 }
 
-/// As [`build_image`], for any program of a board. An image that came with this program is used as it is.
+/// Builds as [`build_image`] does, for any program of a board. An image that came with this program is used
+/// as it is.
 pub fn build_program(root: &Path, program: Program) -> Result<PathBuf, BuildError> {
     let own = env::current_exe().ok().and_then(|own| shipped(&own, program));
     own.map_or_else(|| build_into(&target_dir(root), root, program), Ok)
 }
 
-/// As [`build_program`], for the robot of another description: `source` is a built-in name or an absolute
-/// path, as the environment variable [`ROBOT`] takes it, `name` the robot's. The image is copied to
+/// Builds as [`build_program`] does, for the robot of another description: `source` is a built-in name or an
+/// absolute path, as the environment variable [`ROBOT`] takes it, `name` the robot's. The image is copied to
 /// `robots/NAME` in the target directory, as the next build for another robot replaces the original.
 pub fn build_for_robot(
     root: &Path,
@@ -195,7 +195,7 @@ impl ImageBody {
     /// Both bodies: legs, then wheels.
     pub const ALL: [Self; 2] = [Self::Legged, Self::Omni];
 
-    /// Its name in options, which is the feature's name.
+    /// Name in options, which is the feature's name.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Legged => "legged",
@@ -204,7 +204,7 @@ impl ImageBody {
     }
 }
 
-/// Where cargo puts what it builds: `CARGO_TARGET_DIR` as cargo reads it, or the workspace's own `target`.
+/// Directory of cargo's output: `CARGO_TARGET_DIR` as cargo reads it, or the workspace's own `target`.
 pub fn target_dir(root: &Path) -> PathBuf {
     env::var_os("CARGO_TARGET_DIR")
         .filter(|directory| !directory.is_empty())
@@ -212,26 +212,32 @@ pub fn target_dir(root: &Path) -> PathBuf {
         .unwrap_or_else(|| root.join("target"))
 }
 
-/// Why there is no firmware image to run.
-#[derive(Debug)]
+/// Reason why there is no firmware image to run.
+#[derive(Debug, thiserror::Error)]
 pub enum BuildError {
     /// No compiler here builds for the robot's processor.
-    Target(TargetError),
+    #[error("the firmware cannot be built: {0}")]
+    Target(#[source] TargetError),
     /// The sources or cargo are missing, and there is no earlier build.
+    #[error("the firmware cannot be built: {why}, and there is no image at {}; install rustup and run in a clone of the \
+         project, or set CARGO_TARGET_DIR to where an image was built", image.display())]
     NothingToBuild {
-        /// What is missing, as text for the user.
+        /// Missing sources or tools, as text for the user.
         why: String,
-        /// Where the build was looked for.
+        /// Path at which the build was looked for.
         image: PathBuf,
     },
     /// cargo could not be run.
+    #[error("`{command}` does not run: {error}")]
     Cargo {
         /// The command that failed.
         command: String,
         /// Error with which the start of cargo failed.
+        #[source]
         error: std::io::Error,
     },
     /// The firmware does not compile; the compiler's output is on stderr.
+    #[error("the firmware does not build: `{command}` failed ({status})")]
     Failed {
         /// The command that repeats it.
         command: String,
@@ -239,49 +245,20 @@ pub enum BuildError {
         status: ExitStatus,
     },
     /// The image cannot be put where it is kept.
+    #[error("the image cannot be copied to {}: {error}", image.display())]
     Copy {
         /// Path at which it is kept.
         image: PathBuf,
         /// Error of the copy.
+        #[source]
         error: std::io::Error,
     },
     /// cargo succeeded, but its output is not where it belongs.
+    #[error("cargo left no image at {}", image.display())]
     NoImage {
         /// Path at which it was expected.
         image: PathBuf,
     },
-}
-
-impl fmt::Display for BuildError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Target(error) => write!(f, "the firmware cannot be built: {error}"),
-            Self::NothingToBuild { why, image } => write!(
-                f,
-                "the firmware cannot be built: {why}, and there is no image at {}; install rustup and run in a clone of the \
-                 project, or set CARGO_TARGET_DIR to where an image was built",
-                image.display()
-            ),
-            Self::Cargo { command, error } => write!(f, "`{command}` does not run: {error}"),
-            Self::Failed { command, status } => {
-                write!(f, "the firmware does not build: `{command}` failed ({status})")
-            }
-            Self::Copy { image, error } => {
-                write!(f, "the image cannot be copied to {}: {error}", image.display())
-            }
-            Self::NoImage { image } => write!(f, "cargo left no image at {}", image.display()),
-        }
-    }
-}
-
-impl std::error::Error for BuildError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Target(error) => Some(error),
-            Self::Cargo { error, .. } | Self::Copy { error, .. } => Some(error),
-            _ => None,
-        }
-    }
 }
 
 /// Runs cargo with its output on our stderr, except where it had nothing to do: then without output.
@@ -291,15 +268,15 @@ fn run_cargo(build: &mut Command) -> Result<(), BuildError> {
     let command = line_of(build);
     let lost = |error| BuildError::Cargo { command: command.clone(), error };
     let mut child = build.spawn().map_err(lost)?;
-    if let Some(description) = child.stderr.take() {
-        let mut reported = false;
-        for line in BufReader::new(description).split(b'\n').map_while(Result::ok) {
+    if let Some(stderr) = child.stderr.take() {
+        let mut announced = false;
+        for line in BufReader::new(stderr).split(b'\n').map_while(Result::ok) {
             let line = String::from_utf8_lossy(&line).into_owned();
-            if reported || !line.contains("Finished") {
-                if !reported {
+            if announced || !line.contains("Finished") {
+                if !announced {
                     eprintln!("firmware: building the image ({command})");
                 }
-                reported = true;
+                announced = true;
                 eprintln!("{line}");
             }
         }
@@ -308,7 +285,7 @@ fn run_cargo(build: &mut Command) -> Result<(), BuildError> {
     if status.success() { Ok(()) } else { Err(BuildError::Failed { command, status }) }
 }
 
-/// What prevents any build, independent of the compiler.
+/// Obstacle to any build, independent of the compiler.
 fn cannot_build(root: &Path) -> Option<String> {
     let manifest = root.join(MANIFEST);
     if !manifest.is_file() {
@@ -322,7 +299,7 @@ fn cannot_build(root: &Path) -> Option<String> {
 pub const ROBOT: &str = "ONETWO_ROBOT";
 /// The robot that this program itself is compiled for: images for it must be for the same.
 const OWN_ROBOT: Option<&str> = option_env!("ONETWO_ROBOT");
-/// Where a release archive has its images; its program is in `bin` beside `share`.
+/// Directory of the images in a release archive; its program is in `bin` beside `share`.
 pub const SHIPPED_IMAGES: &str = "share/onetwo/images";
 /// The board that QEMU emulates.
 const PACKAGE: &str = "board-mps2";

@@ -36,7 +36,7 @@ pub use new_board::{CHIPS, ChipTemplate, NewBoard, NewBoardError, new_board};
 pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
 pub use target::{TargetError, ThumbToolchain, ensure_target, ensure_target_of};
 
-/// Which places a missing tool may be installed to.
+/// Places to which a missing tool may be installed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Install {
     /// Into the user's own directories only: rustup's targets. What a program may do unasked.

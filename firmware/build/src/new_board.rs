@@ -4,7 +4,6 @@
 //! The workspace takes every directory of `firmware/boards`, so nothing registers a board but its directory,
 //! and one row of the table of crates in docs/architecture.md.
 
-use std::fmt;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,23 +11,23 @@ use std::path::{Path, PathBuf};
 /// A chip that there is a skeleton for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChipTemplate {
-    /// Its name in options.
+    /// Name of the chip in options.
     pub name: &'static str,
-    /// Its name in text.
-    pub label: &'static str,
-    /// As `probe-rs chip list` names it.
+    /// Name of the chip in text, with its article.
+    pub full_name: &'static str,
+    /// Name of the chip in `probe-rs chip list`.
     probe: &'static str,
     /// The target, a triple.
     pub target: &'static str,
     /// Address of the key page.
     page: &'static str,
-    /// What its README says of the page.
+    /// Note on the page in the board's README.
     page_note: &'static str,
     /// Lines of its dependencies.
     dependencies: &'static str,
     /// The start of the chip.
     init: &'static str,
-    /// Memory map.
+    /// Memory map, the text of `memory.x`.
     memory: &'static str,
     /// Lines of `panics.allow` that its drivers need.
     panics: &'static str,
@@ -40,7 +39,7 @@ pub struct ChipTemplate {
 pub const CHIPS: [ChipTemplate; 4] = [
     ChipTemplate {
         name: "nrf52840",
-        label: "an nRF52840",
+        full_name: "an nRF52840",
         probe: "nRF52840_xxAA",
         target: "thumbv7em-none-eabihf",
         page: "0x000f_f000",
@@ -57,7 +56,7 @@ pub const CHIPS: [ChipTemplate; 4] = [
     },
     ChipTemplate {
         name: "rp2350",
-        label: "an RP2350",
+        full_name: "an RP2350",
         probe: "RP235x",
         target: "thumbv8m.main-none-eabihf",
         page: "0x103f_f000",
@@ -71,7 +70,7 @@ pub const CHIPS: [ChipTemplate; 4] = [
     },
     ChipTemplate {
         name: "stm32f407vg",
-        label: "an STM32F407VG",
+        full_name: "an STM32F407VG",
         probe: "STM32F407VGTx",
         target: "thumbv7em-none-eabihf",
         page: "0x080e_0000",
@@ -84,7 +83,7 @@ pub const CHIPS: [ChipTemplate; 4] = [
     },
     ChipTemplate {
         name: "stm32h743zi",
-        label: "an STM32H743ZI",
+        full_name: "an STM32H743ZI",
         probe: "STM32H743ZITx",
         target: "thumbv7em-none-eabihf",
         page: "0x081e_0000",
@@ -99,10 +98,10 @@ pub const CHIPS: [ChipTemplate; 4] = [
 
 const STM32_INIT: &str = "    let _chip = embassy_stm32::init(embassy_stm32::Config::default());";
 
-/// What was written.
+/// Files of a new board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NewBoard {
-    /// The board's directory.
+    /// Directory of the board.
     pub directory: PathBuf,
     /// The other file in which it stands, and the line.
     pub registered: (PathBuf, String),
@@ -130,7 +129,7 @@ pub fn new_board(root: &Path, name: &str, chip: &str) -> Result<NewBoard, NewBoa
     let text = fs::read_to_string(&table).map_err(|error| NewBoardError::File(table.clone(), error))?;
     let row = format!(
         "| `board-{name}` | firmware/boards/{name} | robot | a real robot's board, {}; [what is left to wire](../firmware/boards/{name}/README.md) |",
-        chip.label.split_once(' ').map_or(chip.label, |(_, label)| label)
+        chip.full_name.split_once(' ').map_or(chip.full_name, |(_, full_name)| full_name)
     );
     let text = with_row(&text, &row).ok_or_else(|| NewBoardError::NoTable(table.clone()))?;
     let directory = boards.join(name);
@@ -161,27 +160,29 @@ fn files(name: &str, chip: &ChipTemplate) -> Vec<(String, String)> {
     } else {
         "#![allow(unsafe_code, reason = \"an interrupt is enabled\")]"
     };
-    let filled = |template: &str| {
-        [
-            ("@NAME@", name),
-            ("@LABEL@", chip.label),
-            ("@PROBE@", chip.probe),
-            ("@TARGET@", chip.target),
-            ("@PAGE@", chip.page),
-            ("@PAGE_NOTE@", chip.page_note),
-            ("@DEPENDENCIES@", chip.dependencies),
-            ("@INIT@", chip.init),
-            ("@PANICS@", chip.panics),
-            ("@MODULES@", &modules),
-            ("@UNSAFE@", guard),
-        ]
-        .into_iter()
-        .fold(template.to_owned(), |text, (mark, value)| text.replace(mark, value))
-    };
-    let common = COMMON.into_iter().map(|(file, template)| (file.to_owned(), filled(template)));
+    let values = [
+        ("@NAME@", name),
+        ("@LABEL@", chip.full_name),
+        ("@PROBE@", chip.probe),
+        ("@TARGET@", chip.target),
+        ("@PAGE@", chip.page),
+        ("@PAGE_NOTE@", chip.page_note),
+        ("@DEPENDENCIES@", chip.dependencies),
+        ("@INIT@", chip.init),
+        ("@PANICS@", chip.panics),
+        ("@MODULES@", &modules),
+        ("@UNSAFE@", guard),
+    ];
+    let common = COMMON.into_iter().map(|(file, template)| (file.to_owned(), filled(template, &values)));
     let memory = [("memory.x".to_owned(), chip.memory.to_owned())];
-    let sources = chip.sources.iter().map(|(file, template)| (format!("src/{file}"), filled(template)));
+    let sources =
+        chip.sources.iter().map(|(file, template)| (format!("src/{file}"), filled(template, &values)));
     common.chain(memory).chain(sources).collect()
+}
+
+/// A template with its marks replaced by their values.
+fn filled(template: &str, values: &[(&str, &str)]) -> String {
+    values.iter().fold(template.to_owned(), |text, (mark, value)| text.replace(mark, value))
 }
 
 fn module(name: &str) -> String {
@@ -195,57 +196,33 @@ fn with_row(text: &str, row: &str) -> Option<String> {
     Some(format!("{before}{last}\n{row}{after}"))
 }
 
-/// Why there is no new board.
-#[derive(Debug)]
+/// Reason why there is no new board.
+#[derive(Debug, thiserror::Error)]
 pub enum NewBoardError {
     /// A name that no package or directory can have everywhere.
+    #[error(
+        "`{0}` is no name for a board: use small letters a–z, digits and hyphens, a letter first, {NAME_LEN_MAX} at most"
+    )]
     Name(String),
     /// A name that options use for something else.
+    #[error("`{0}` names something else in the options of `onetwo firmware`; take another name")]
     Reserved(String),
-    /// There is a board, or something else, in this directory.
+    /// A board, or something else, is in this directory already.
+    #[error("{} is there already; take another name, or remove it", .0.display())]
     Exists(PathBuf),
     /// No skeleton for this chip.
+    #[error("no skeleton for this chip; there are: {}", CHIPS.iter().map(|chip| chip.name).collect::<Vec<_>>().join(", "))]
     Chip,
     /// The sources are not here.
+    #[error("{} is not here: run it in a clone of the project", .0.display())]
     NoWorkspace(PathBuf),
     /// This file has no table of crates.
+    #[error("{} has no row `| `board-…` that a new one could stand behind", .0.display())]
     NoTable(PathBuf),
     /// A file or directory cannot be read or written.
+    #[error("{}: {}", .0.display(), .1)]
     File(PathBuf, io::Error),
 }
-
-impl fmt::Display for NewBoardError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Name(name) => write!(
-                f,
-                "`{name}` is no name for a board: use small letters a–z, digits and hyphens, a letter first, {NAME_LEN_MAX} at most"
-            ),
-            Self::Reserved(name) => {
-                write!(
-                    f,
-                    "`{name}` names something else in the options of `onetwo firmware`; take another name"
-                )
-            }
-            Self::Exists(directory) => {
-                write!(f, "{} is there already; take another name, or remove it", directory.display())
-            }
-            Self::Chip => {
-                let names: Vec<_> = CHIPS.iter().map(|chip| chip.name).collect();
-                write!(f, "no skeleton for this chip; there are: {}", names.join(", "))
-            }
-            Self::NoWorkspace(directory) => {
-                write!(f, "{} is not here: run it in a clone of the project", directory.display())
-            }
-            Self::NoTable(file) => {
-                write!(f, "{} has no row `| `board-…` that a new one could stand behind", file.display())
-            }
-            Self::File(path, error) => write!(f, "{}: {error}", path.display()),
-        }
-    }
-}
-
-impl std::error::Error for NewBoardError {}
 
 /// Files of every board.
 const COMMON: [(&str, &str); 7] = [

@@ -5,7 +5,6 @@
 //! selects the function to call (semihosting), and its exit code reports the result. `probe-rs run` does the
 //! same on hardware.
 
-use std::fmt;
 use std::io::Read as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -24,7 +23,7 @@ pub struct OnTarget {
     /// Address of its function.
     address: u32,
     should_panic: bool,
-    /// Whether the test is not to be run.
+    /// True if the test is not to be run.
     pub ignored: bool,
     timeout: Duration,
 }
@@ -32,23 +31,16 @@ pub struct OnTarget {
 /// Result of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TestVerdict {
-    /// It ended as expected.
+    /// The test ended as expected.
     Passed,
     /// Any other result, with its output.
     Failed(String),
 }
 
-/// Why the tests of a file cannot be listed.
-#[derive(Debug, PartialEq, Eq)]
+/// Reason why the tests of a file cannot be listed.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[error("its tests cannot be listed: {0}")]
 pub struct NoTests(&'static str);
-
-impl fmt::Display for NoTests {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "its tests cannot be listed: {}", self.0)
-    }
-}
-
-impl std::error::Error for NoTests {}
 
 /// The tests of a firmware image by name; `None` where it holds no tests.
 pub fn tests_in(elf: &[u8]) -> Result<Option<Vec<OnTarget>>, NoTests> {
@@ -58,28 +50,24 @@ pub fn tests_in(elf: &[u8]) -> Result<Option<Vec<OnTarget>>, NoTests> {
     let mut tests = Vec::new();
     for symbol in file.symbols().filter(|symbol| symbol.section_index() == Some(section.index())) {
         // The others are the section's own, such as the version of its form.
-        let Some(reported) = symbol.name().ok().filter(|name| name.starts_with('{')) else { continue };
-        let reported: Value =
-            serde_json::from_str(reported).map_err(|_| NoTests("a test's name is no JSON"))?;
+        let Some(json) = symbol.name().ok().filter(|name| name.starts_with('{')) else { continue };
+        let test: Value = serde_json::from_str(json).map_err(|_| NoTests("a test's name is no JSON"))?;
         let at = symbol.address().checked_sub(section.address()).and_then(|at| usize::try_from(at).ok());
-        let label = |n: usize| {
-            let bytes = table.get(at? + 4 * n..)?.first_chunk()?;
-            Some(u32::from_le_bytes(*bytes))
-        };
-        let (Some(address), Some(path), Some(len)) = (label(0), label(1), label(2)) else {
-            return Err(NoTests("a test has no function"));
-        };
+        let entry = at.and_then(|at| table.get(at..)?.first_chunk::<12>());
+        let Some(entry) = entry else { return Err(NoTests("a test has no function")) };
+        let [address, path, len] =
+            [0, 4, 8].map(|at| u32::from_le_bytes([0, 1, 2, 3].map(|byte| entry[at + byte])));
         let module = text_at(&file, path, len).unwrap_or_default();
         // Without the crate's name, and without the module that every file has.
         let module = module.split_once("::").map_or("", |(_, path)| path).trim_end_matches("::tests");
-        let name = reported["name"].as_str().ok_or(NoTests("a test has no name"))?;
-        let flag = |key: &str| reported[key].as_bool().unwrap_or(false);
+        let name = test["name"].as_str().ok_or(NoTests("a test has no name"))?;
+        let flag = |key: &str| test[key].as_bool().unwrap_or(false);
         tests.push(OnTarget {
             name: format!("{module}::{name}"),
             address,
             should_panic: flag("should_panic"),
             ignored: flag("ignored"),
-            timeout: reported["timeout"].as_u64().map_or(TIMEOUT, Duration::from_secs),
+            timeout: test["timeout"].as_u64().map_or(DEFAULT_TIMEOUT, Duration::from_secs),
         });
     }
     tests.sort_by(|a, b| a.name.cmp(&b.name));
@@ -114,7 +102,7 @@ pub fn run_test(qemu: &Path, image: &Path, test: &OnTarget) -> std::io::Result<T
             child.wait()?;
             break None;
         }
-        std::thread::sleep(LOOK);
+        std::thread::sleep(EXIT_POLL_PERIOD);
     };
     let mut output = String::new();
     // Output that is not text is dropped; the status is reported anyway.
@@ -142,16 +130,16 @@ fn judged(test: &OnTarget, well: Option<bool>, output: &str) -> TestVerdict {
 /// Section in which `embedded-test` lists its tests.
 const SECTION: &str = ".embedded_test";
 /// Time limit of a test that names none: a hundred times the longest run, for a busy machine.
-const TIMEOUT: Duration = Duration::from_mins(1);
+const DEFAULT_TIMEOUT: Duration = Duration::from_mins(1);
 /// Period in which an emulator is polled.
-const LOOK: Duration = Duration::from_millis(5);
+const EXIT_POLL_PERIOD: Duration = Duration::from_millis(5);
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn test(should_panic: bool) -> OnTarget {
-        OnTarget { name: "a::b".into(), address: 1, should_panic, ignored: false, timeout: TIMEOUT }
+        OnTarget { name: "a::b".into(), address: 1, should_panic, ignored: false, timeout: DEFAULT_TIMEOUT }
     }
 
     #[test]
@@ -161,15 +149,13 @@ mod tests {
         assert_eq!(judged(&test(false), Some(false), "why"), TestVerdict::Failed("why".into()));
         assert!(matches!(judged(&test(true), Some(true), ""), TestVerdict::Failed(_)));
         for should_panic in [false, true] {
-            let TestVerdict::Failed(description) = judged(&test(should_panic), None, "") else {
-                panic!("passed")
-            };
-            assert!(description.contains("60 s"), "{description}");
+            let TestVerdict::Failed(reason) = judged(&test(should_panic), None, "") else { panic!("passed") };
+            assert!(reason.contains("60 s"), "{reason}");
         }
     }
 
     #[test]
-    fn what_is_no_image_has_no_tests() {
+    fn other_bytes_than_an_image_have_no_tests() {
         assert!(tests_in(b"no image").is_err());
     }
 }

@@ -41,7 +41,7 @@ pub(crate) fn run_within(limit: Duration, command: &mut Command) -> Result<(), S
                 let _ = child.wait();
                 return Err(format!("`{line}` gave no answer within {} s", limit.as_secs()));
             }
-            Ok(None) => sleep(POLL),
+            Ok(None) => sleep(POLL_PERIOD),
             Err(error) => return Err(format!("`{line}` was lost: {error}")),
         }
     }
@@ -61,7 +61,7 @@ pub(crate) fn in_path(program: &str) -> Option<PathBuf> {
 }
 
 /// Period in which a running command is polled: short against any download, long against the poll itself.
-const POLL: Duration = Duration::from_millis(50);
+const POLL_PERIOD: Duration = Duration::from_millis(50);
 
 #[cfg(test)]
 mod tests {

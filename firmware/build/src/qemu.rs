@@ -1,6 +1,5 @@
 //! `qemu`: detection of QEMU.
 
-use std::fmt;
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
@@ -36,51 +35,37 @@ fn install_package() -> Result<(), String> {
     install.env("DEBIAN_FRONTEND", "noninteractive");
     install.args(["install", "-y", "-qq", "--no-install-recommends", QEMU]);
     // A fresh system has no package lists yet; elsewhere the first attempt is enough.
-    run_within(DOWNLOAD, &mut install).or_else(|_| {
-        run_within(DOWNLOAD, Command::new("apt-get").args(["-qq", "update"]))?;
-        run_within(DOWNLOAD, &mut install)
+    run_within(DOWNLOAD_TIMEOUT, &mut install).or_else(|_| {
+        run_within(DOWNLOAD_TIMEOUT, Command::new("apt-get").args(["-qq", "update"]))?;
+        run_within(DOWNLOAD_TIMEOUT, &mut install)
     })
 }
 
 /// 45 MB at 200 kB/s, the slowest line we would wait for.
-const DOWNLOAD: Duration = Duration::from_mins(4);
+const DOWNLOAD_TIMEOUT: Duration = Duration::from_mins(4);
 
-/// Why there is no QEMU to run the image with.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Reason why there is no QEMU to run the image with.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum QemuError {
-    /// It is not installed, and its installation failed (where that was tried).
+    /// QEMU is not installed, and its installation failed (where that was tried).
+    #[error("{QEMU} is not installed{}; {HOW_TO_INSTALL}", why.as_ref().map_or_else(String::new, |why| format!(" ({why})")))]
     Missing {
-        /// What prevented its installation.
+        /// Obstacle to its installation.
         why: Option<String>,
     },
-    /// It is installed but does not run.
+    /// QEMU is installed but does not run.
+    #[error("{QEMU} does not run: {why}; {HOW_TO_INSTALL}")]
     Broken {
         /// Reason or output of its failed start.
         why: String,
     },
-    /// It is there but lacks the machine our firmware is made for: too old, or built without it.
+    /// QEMU lacks the machine our firmware is made for: too old, or built without it.
+    #[error("{} has no machine {MACHINE}; QEMU 7.2 or newer is needed", program.display())]
     UnknownMachine {
         /// The program that was run.
         program: PathBuf,
     },
 }
-
-impl fmt::Display for QemuError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Missing { why: Some(why) } => {
-                write!(f, "{QEMU} is not installed ({why}); {HOW_TO_INSTALL}")
-            }
-            Self::Missing { why: None } => write!(f, "{QEMU} is not installed; {HOW_TO_INSTALL}"),
-            Self::Broken { why } => write!(f, "{QEMU} does not run: {why}; {HOW_TO_INSTALL}"),
-            Self::UnknownMachine { program } => {
-                write!(f, "{} has no machine {MACHINE}; QEMU 7.2 or newer is needed", program.display())
-            }
-        }
-    }
-}
-
-impl std::error::Error for QemuError {}
 
 /// The emulator for 32-bit Arm.
 pub const QEMU: &str = "qemu-system-arm";
@@ -100,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whoever_lacks_it_reads_what_to_install() {
+    fn without_qemu_the_error_says_what_to_install() {
         let text = QemuError::Missing { why: Some("not root".into()) }.to_string();
         assert!(text.starts_with("qemu-system-arm is not installed (not root); install it"), "{text}");
         for system in ["apt-get install qemu-system-arm", "dnf install", "pacman -S", "brew install qemu"] {

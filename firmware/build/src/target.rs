@@ -1,7 +1,6 @@
 //! `target`: compiler detection for the robot's processor: rustup's target where it is, or can be fetched.
 
 use std::env;
-use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,13 +15,13 @@ pub fn ensure_target(root: &Path) -> Result<ThumbToolchain, TargetError> {
     ensure_target_of(root, TARGET)
 }
 
-/// As [`ensure_target`], for any target: a board may have one of its own.
+/// Ensures what [`ensure_target`] does, for any target: a board may have one of its own.
 pub fn ensure_target_of(root: &Path, target: &str) -> Result<ThumbToolchain, TargetError> {
     output_of(rustc().current_dir(root).arg("-vV")).map_err(|why| TargetError::NoCompiler { why })?;
     let missing = |why| TargetError::NoTarget { target: target.to_owned(), why };
     if prebuilt(root, target).is_err() {
         let rustup = in_path("rustup").ok_or_else(|| missing("rustup is not installed".to_owned()))?;
-        run_within(RUSTUP, Command::new(rustup).current_dir(root).args(["target", "add", target]))
+        run_within(RUSTUP_TIMEOUT, Command::new(rustup).current_dir(root).args(["target", "add", target]))
             .map_err(missing)?;
         prebuilt(root, target).map_err(missing)?;
     }
@@ -43,40 +42,24 @@ impl ThumbToolchain {
     }
 }
 
-/// Why this machine cannot build for the robot's processor.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Reason why this machine cannot build for the robot's processor.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TargetError {
-    /// There is no Rust compiler at all.
+    /// No Rust compiler was found.
+    #[error("no Rust compiler ({why}); install rustup, then `rustup target add {TARGET}`")]
     NoCompiler {
         /// Output of the attempt.
         why: String,
     },
     /// The compiler has no `core` for the target, and rustup did not fetch it.
+    #[error("nothing here compiles for {target} ({why}); install it with `rustup target add {target}`")]
     NoTarget {
-        /// The target.
+        /// Target triple that was asked for.
         target: String,
-        /// The obstacle.
+        /// Obstacle to its installation.
         why: String,
     },
 }
-
-impl fmt::Display for TargetError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoCompiler { why } => {
-                write!(f, "no Rust compiler ({why}); install rustup, then `rustup target add {TARGET}`")
-            }
-            Self::NoTarget { target, why } => {
-                write!(
-                    f,
-                    "nothing here compiles for {target} ({why}); install it with `rustup target add {target}`"
-                )
-            }
-        }
-    }
-}
-
-impl std::error::Error for TargetError {}
 
 /// `cargo` as it was called, so that the same toolchain is used.
 pub(crate) fn cargo_program() -> PathBuf {
@@ -87,7 +70,8 @@ fn rustc() -> Command {
     Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()))
 }
 
-/// Whether the toolchain that the workspace's file, or the caller, has chosen holds `core` for the target.
+/// Tells whether the toolchain that the workspace's file, or the caller, has chosen holds `core` for the
+/// target.
 fn prebuilt(root: &Path, target: &str) -> Result<(), String> {
     let mut question = rustc();
     question.current_dir(root).args(["--print", "target-libdir", "--target", target]);
@@ -98,14 +82,14 @@ fn prebuilt(root: &Path, target: &str) -> Result<(), String> {
 }
 
 /// The target is 10 MB; a server that is silent for this long will stay silent.
-const RUSTUP: Duration = Duration::from_mins(2);
+const RUSTUP_TIMEOUT: Duration = Duration::from_mins(2);
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn the_reason_is_reported_and_what_to_install() {
+    fn the_error_has_the_reason_and_what_to_install() {
         let text =
             TargetError::NoTarget { target: TARGET.into(), why: "no answer within 120 s".into() }.to_string();
         let expected = "nothing here compiles for thumbv7em-none-eabihf (no answer within 120 s); \

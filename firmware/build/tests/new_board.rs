@@ -5,7 +5,7 @@ use std::fs;
 use firmware_build::{NewBoardError, new_board};
 
 #[test]
-fn what_is_refused_leaves_nothing_behind() {
+fn a_refused_board_leaves_no_files() {
     let copy = std::env::temp_dir().join(format!("onetwo-new-board-refused-{}", std::process::id()));
     fs::create_dir_all(copy.join("firmware/boards/there")).unwrap();
     fs::create_dir_all(copy.join("docs")).unwrap();

@@ -13,7 +13,7 @@ use rf24::radio::prelude::{EsbFifo, EsbRadio, EsbStatus};
 use crate::chip::{Channel, Fault, Lines};
 use crate::fragment::{Assembler, Cutter, Fragments, Joined, NotSent, Payload, question};
 
-/// What a base station's radio sent and dropped.
+/// Counts of frames that a base station's radio sent and dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BaseCounts {
     /// Frames of the host given to the air to their last fragment.
@@ -26,26 +26,37 @@ pub struct BaseCounts {
     pub questions: u32,
     /// Starts of the chip after the first: its supply dipped, or it stood still.
     pub restarts: u32,
-    /// Robots' frames.
+    /// Frames of robots that were joined.
     pub robots: Joined,
 }
 
-/// Who a frame is for.
+/// Receiver of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Target {
     Everyone,
     One(RobotId),
 }
 
-/// What is going on with one robot.
+/// State of the exchange with one robot.
 #[derive(Clone, Debug)]
 struct Peer {
     cutter: Cutter,
     assembler: Assembler,
     asked: Option<Instant>,
-    heard: Option<Instant>,
-    /// Its last acknowledgement carried something: there may be more.
+    received_at: Option<Instant>,
+    /// True if the last acknowledgement carried something: there may be more.
     has_more: bool,
+}
+
+impl Peer {
+    fn is_here(&self, now: Instant) -> bool {
+        self.received_at.is_some_and(|received_at| now.since(received_at) <= PRESENCE_LEASE)
+    }
+
+    /// Returns whether the robot is here and has more to send, or was not asked for a while.
+    fn is_due(&self, now: Instant) -> bool {
+        self.is_here(now) && (self.has_more || self.asked.is_none_or(|asked| now.since(asked) >= ASK_EVERY))
+    }
 }
 
 /// Payloads of one frame that are not with the chip yet.
@@ -68,7 +79,7 @@ pub struct Base<S, C, D> {
     sending: Option<Sending>,
     /// The chip has payloads of this target, since then.
     busy: Option<(Target, Instant)>,
-    /// What the chip has is a question.
+    /// True while the packet in the chip is a question.
     is_asking: bool,
     /// Repeats that the chip is set to.
     repeats: u8,
@@ -83,9 +94,9 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
     pub fn start(now: Instant, channel: Channel, spi: S, chip_enable: C, pause: D) -> Result<Self, Fault> {
         let peer = Peer {
             cutter: Cutter::new(channel.team),
-            assembler: Assembler::new(channel.team, PATIENCE),
+            assembler: Assembler::new(channel.team, ASSEMBLY_TIME_MAX),
             asked: None,
-            heard: None,
+            received_at: None,
             has_more: false,
         };
         let mut radio = Self {
@@ -121,7 +132,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
     /// Serves the chip; returns a robot's frame that came. Call until `None` when the line IRQ is low, after
     /// [`Base::send`], and every [`crate::SERVE_EVERY`] at least.
     pub fn poll(&mut self, now: Instant) -> Result<Option<Packet>, Fault> {
-        let stands = self.busy.is_some_and(|(_, since)| now.since(since) > STANDS_STILL);
+        let stands = self.busy.is_some_and(|(_, since)| now.since(since) > SENDING_TIME_MAX);
         if stands || (self.busy.is_none() && now.since(self.checked) >= CHECK_EVERY) {
             self.checked = now;
             if stands || !self.lines.is_set()? {
@@ -158,7 +169,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
         Ok(None)
     }
 
-    /// What was sent and dropped so far.
+    /// Counts since the start.
     pub fn counts(&self) -> BaseCounts {
         let robots = self.peers.iter().fold(Joined::default(), |sum, peer| {
             let own = peer.assembler.joined();
@@ -177,7 +188,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
         self.lines.radio.clear_status_flags(StatusFlags::default().with_tx_ds(true).with_tx_df(true))?;
         let Some(peer) = self.peers.get_mut(robot.index()) else { return Ok(()) };
         if came {
-            peer.heard = Some(now);
+            peer.received_at = Some(now);
         } else {
             // The chip keeps the payload (PS 7.4.2). Without this fragment the robot cannot join the others.
             self.lines.radio.flush_tx()?;
@@ -253,7 +264,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
                 Target::One(robot) => &mut self.peers.get_mut(robot.index())?.cutter,
             };
             match cutter.cut(&packet) {
-                Ok(fragments) if now.since(since) <= holds(&packet) => {
+                Ok(fragments) if now.since(since) <= wait_max(&packet) => {
                     return Some(Sending { target, fragments, given: 0, is_question: false });
                 }
                 _ => self.counts.late = self.counts.late.saturating_add(1),
@@ -265,12 +276,9 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
     /// A robot to ask, where the host has nothing to say: one with more, one that was not spoken to, or one
     /// that may have been switched on.
     fn next_question(&mut self, now: Instant) -> Option<Sending> {
-        let due = |peer: &Peer| {
-            peer.is_here(now)
-                && (peer.has_more || peer.asked.is_none_or(|asked| now.since(asked) >= ASK_EVERY))
-        };
-        // Who was asked longest ago.
-        let waiting = RobotId::all().filter(|robot| self.peers.get(robot.index()).is_some_and(due));
+        // The robot that was asked longest ago.
+        let waiting =
+            RobotId::all().filter(|robot| self.peers.get(robot.index()).is_some_and(|peer| peer.is_due(now)));
         let longest = waiting.min_by_key(|robot| self.peers.get(robot.index()).map(|peer| peer.asked));
         let robot = if let Some(robot) = longest {
             robot
@@ -293,55 +301,50 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
     }
 }
 
-impl Peer {
-    fn is_here(&self, now: Instant) -> bool {
-        self.heard.is_some_and(|heard| now.since(heard) <= HERE)
-    }
-}
-
 /// Commands and welcomes name their robot in the first byte after the variant (SPEC.md: HostMessage).
 fn target(frame: &[u8]) -> Target {
     match (frame.get(SENDER_AT), frame.get(HEADER_LEN), frame.get(HEADER_LEN + 1)) {
-        (Some(&HOST), Some(&(COMMAND | WELCOME)), Some(robot)) => {
+        (Some(&HOST_SENDER), Some(&(COMMAND_VARIANT | WELCOME_VARIANT)), Some(robot)) => {
             RobotId::new(*robot).map_or(Target::Everyone, Target::One)
         }
         _ => Target::Everyone,
     }
 }
 
-/// How long a frame may wait for the air.
-fn holds(frame: &[u8]) -> Duration {
-    let is_welcome = frame.get(SENDER_AT) == Some(&HOST) && frame.get(HEADER_LEN) == Some(&WELCOME);
-    if is_welcome { WELCOME_HOLDS } else { LATE }
+/// Longest time that a frame may wait for the air.
+fn wait_max(frame: &[u8]) -> Duration {
+    let is_welcome =
+        frame.get(SENDER_AT) == Some(&HOST_SENDER) && frame.get(HEADER_LEN) == Some(&WELCOME_VARIANT);
+    if is_welcome { WELCOME_WAIT_MAX } else { WAIT_MAX }
 }
 
-/// Where a frame has its sender, and the host's number there; variants of the host's message.
+/// Offset of the sender in a frame, and the host's number there; variants of the host's message.
 const SENDER_AT: usize = 2;
-const HOST: u8 = 16;
-const COMMAND: u8 = 1;
-const WELCOME: u8 = 2;
+const HOST_SENDER: u8 = 16;
+const COMMAND_VARIANT: u8 = 1;
+const WELCOME_VARIANT: u8 = 2;
 
 const _: () = assert!(core::mem::size_of::<Payload>() <= 40);
 
 /// Frames of the host that wait: those of two snapshots of four parts, twelve commands and what is passed on.
 const WAITING_MAX: usize = 32;
-/// A frame that waited longer than the period of a snapshot is not sent: a newer one is behind it.
-const LATE: Duration = Duration::millis(10);
-/// A welcome comes ten times a second, together with a snapshot and commands: all of them take 11.5 ms of the
-/// air at 1 Mbit/s, and no newer one is behind it for 100 ms.
-const WELCOME_HOLDS: Duration = Duration::millis(50);
-/// A packet without acknowledgement is sent twice more: at a loss of 30 % it then arrives in 97 of 100 cases.
+/// Longest wait of a frame, the period of a snapshot: a newer one is behind it.
+const WAIT_MAX: Duration = Duration::millis(10);
+/// Longest wait of a welcome. It comes ten times a second, together with a snapshot and commands: all of them
+/// take 11.5 ms of the air at 1 Mbit/s, and no newer one is behind it for 100 ms.
+const WELCOME_WAIT_MAX: Duration = Duration::millis(50);
+/// Repetitions of a packet without acknowledgement: at a loss of 30 % it arrives in 97 of 100 cases.
 const REPEATS: u8 = 2;
-/// A robot is asked at least this often: a beacon and telemetry are four fragments in 50 ms.
+/// Longest time between two questions to a robot: a beacon and telemetry are four fragments in 50 ms.
 const ASK_EVERY: Duration = Duration::millis(10);
-/// A robot that was not heard for this long is looked for, and not asked.
-const HERE: Duration = Duration::millis(500);
-/// One number is looked for in this time, so every one in 0.32 s, without repeats: 3 % of the air.
+/// Silence after which a robot is searched for, and not asked.
+const PRESENCE_LEASE: Duration = Duration::millis(500);
+/// Period of the search for one number: every one in 0.32 s, without repeats, 3 % of the air.
 const SEARCH_EVERY: Duration = Duration::millis(20);
-/// From a frame's first fragment to its last: a robot answers every 10 ms, and its 32 frames take half a
-/// second.
-const PATIENCE: Duration = Duration::millis(60);
-/// Three payloads without, or one with every repeat, take 2 ms: a chip that needs longer stands still.
-const STANDS_STILL: Duration = Duration::millis(20);
-/// How often the chip is asked whether it still has its registers.
+/// Longest time from a frame's first fragment to its last: a robot answers every 10 ms, and its 32 frames take
+/// half a second.
+const ASSEMBLY_TIME_MAX: Duration = Duration::millis(60);
+/// Time after which a chip that sends stands still: three payloads without repeats, or one with all, take 2 ms.
+const SENDING_TIME_MAX: Duration = Duration::millis(20);
+/// Period in which the chip's registers are checked.
 const CHECK_EVERY: Duration = Duration::millis(100);

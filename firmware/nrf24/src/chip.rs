@@ -62,14 +62,17 @@ impl Channel {
     }
 }
 
-/// Why a radio does not work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reason why a radio does not work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Fault {
-    /// The SPI bus.
+    /// A transfer on the SPI bus failed.
+    #[error("SPI to the radio chip: {0}")]
     Spi(SpiError),
-    /// The line CE.
+    /// The line CE cannot be set.
+    #[error("line CE of the radio chip: {0}")]
     Pin(PinError),
-    /// The chip answers with what it was not told, or not at all: supply, wiring, or another chip.
+    /// The chip does not hold its settings, or does not answer: supply, wiring, or another chip.
+    #[error("the radio chip answers wrongly; check its supply and wiring")]
     Answer,
 }
 
@@ -82,18 +85,6 @@ impl From<Nrf24Error<SpiError, PinError>> for Fault {
         }
     }
 }
-
-impl core::fmt::Display for Fault {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Spi(error) => write!(f, "SPI to the radio chip: {error}"),
-            Self::Pin(error) => write!(f, "line CE of the radio chip: {error}"),
-            Self::Answer => f.write_str("the radio chip answers wrongly; check its supply and wiring"),
-        }
-    }
-}
-
-impl core::error::Error for Fault {}
 
 /// A chip with its lines.
 pub(crate) struct Lines<S, C, D> {
@@ -133,7 +124,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
         Ok(())
     }
 
-    /// Whether the chip still has what it was told: after a dip of its supply it has not.
+    /// Returns whether the chip still has its settings: after a dip of its supply it has not.
     pub(crate) fn is_set(&mut self) -> Result<bool, Fault> {
         Ok(self.radio.get_payload_length()? == PAYLOAD_MAX as u8)
     }
@@ -176,7 +167,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
         Ok(Some((pipe, payload)))
     }
 
-    /// How often a packet without acknowledgement is sent again.
+    /// Sets the number of repetitions of a packet without acknowledgement.
     pub(crate) fn repeat(&mut self, count: u8) -> Result<(), Fault> {
         Ok(self.radio.set_auto_retries(REPEAT_DELAY, count)?)
     }

@@ -38,31 +38,20 @@ pub type Fragments = heapless::Vec<Payload, FRAGMENTS_MAX>;
 /// 7.3.3.2).
 pub fn question(count: u32) -> Payload {
     let mut payload = Payload::new();
-    let _room = payload.push(((count % u32::from(NUMBERS)) as u8) << 3 | LAST);
+    let _room = payload.push(((count % u32::from(NUMBERS)) as u8) << 3 | LAST_FRAGMENT_BIT);
     payload
 }
 
-/// Why a frame is not sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reason why a frame is not sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotSent {
-    /// Of this many bytes: shorter than a frame's header or longer than a frame.
+    /// The frame has this many bytes: shorter than a frame's header or longer than a frame.
+    #[error("{0} bytes are no frame: it has 3 to {FRAME_LEN_MAX}")]
     Length(usize),
-    /// Of another version or team than those of the channel.
+    /// The frame is of another version or team than those of the channel.
+    #[error("a frame of another version or team; set the team of the base station")]
     Foreign,
 }
-
-impl core::fmt::Display for NotSent {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::Length(len) => write!(f, "{len} bytes are no frame: it has 3 to {FRAME_LEN_MAX}"),
-            Self::Foreign => {
-                f.write_str("a frame of another version or team; set the team of the base station")
-            }
-        }
-    }
-}
-
-impl core::error::Error for NotSent {}
 
 /// Cuts frames; numbers them.
 #[derive(Clone, Debug)]
@@ -90,7 +79,7 @@ impl Cutter {
         let mut fragments = Fragments::new();
         let count = data.len().div_ceil(DATA_MAX);
         for (index, part) in data.chunks(DATA_MAX).enumerate() {
-            let last = if index + 1 == count { LAST } else { 0 };
+            let last = if index + 1 == count { LAST_FRAGMENT_BIT } else { 0 };
             let mut payload = Payload::new();
             // Both fit: the assertion above counts them.
             let _room = payload.push(self.number << 3 | (index as u8) << 1 | last);
@@ -101,10 +90,10 @@ impl Cutter {
     }
 }
 
-/// What an assembler took and dropped.
+/// Counts of fragments that an assembler took and dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Joined {
-    /// Frames complete.
+    /// Frames that are complete.
     pub frames: u32,
     /// Frames begun and given up: a fragment is missing, or came too late.
     pub broken: u32,
@@ -121,7 +110,7 @@ pub struct Assembler {
     frame: Packet,
     /// Number, index awaited, and when it began.
     partial: Option<(u8, u8, Instant)>,
-    /// When each number was begun last.
+    /// Time of the last first fragment of each number.
     begun: [Option<Instant>; NUMBERS as usize],
     joined: Joined,
 }
@@ -147,7 +136,7 @@ impl Assembler {
             // A question.
             return None;
         }
-        let (number, index, is_last) = (head >> 3, head >> 1 & 3, head & LAST != 0);
+        let (number, index, is_last) = (head >> 3, head >> 1 & 3, head & LAST_FRAGMENT_BIT != 0);
         if self.partial.is_some_and(|(_, _, since)| now.since(since) > self.patience) {
             self.give_up();
         }
@@ -187,7 +176,7 @@ impl Assembler {
         None
     }
 
-    /// What was taken and dropped so far.
+    /// Counts since the start.
     pub fn joined(&self) -> Joined {
         self.joined
     }
@@ -201,7 +190,7 @@ impl Assembler {
 }
 
 /// The bit of a frame's last fragment.
-const LAST: u8 = 1;
+const LAST_FRAGMENT_BIT: u8 = 1;
 
 #[cfg(test)]
 mod tests;

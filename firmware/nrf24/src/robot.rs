@@ -12,20 +12,20 @@ use rf24::radio::prelude::{EsbAutoAck, EsbFifo, EsbStatus};
 use crate::chip::{Channel, Fault, Lines};
 use crate::fragment::{Assembler, Cutter, Fragments, Joined, NotSent};
 
-/// What a robot's radio dropped, and why.
+/// Counts of frames that a robot's radio dropped, by cause.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RobotCounts {
-    /// Own frames for which there was no room, or that waited longer than `STALE`.
+    /// Own frames for which there was no room, or that waited longer than `WAIT_MAX`.
     pub unsent: u32,
     /// Starts of the chip after the first: its supply dipped.
     pub restarts: u32,
-    /// To this robot alone.
+    /// Frames to this robot alone.
     pub own: Joined,
-    /// To every robot.
+    /// Frames to every robot.
     pub everyone: Joined,
 }
 
-/// A robot's radio.
+/// Radio of a robot on the chip nRF24L01+.
 #[allow(missing_debug_implementations, reason = "the chip's driver has none")]
 pub struct Robot<S, C, D> {
     lines: Lines<S, C, D>,
@@ -38,29 +38,27 @@ pub struct Robot<S, C, D> {
     waiting: heapless::Deque<(Instant, Fragments), WAITING_MAX>,
     /// Fragments of the first that the chip has already.
     given: usize,
-    /// When a packet to this robot came last.
+    /// Time of the last packet to this robot.
     asked: Instant,
     checked: Instant,
     counts: RobotCounts,
 }
 
 impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
-    /// Sets the chip up and listens.
+    /// Sets the chip up, on its bus with its line CE and a timer for pauses, and listens.
     pub fn start(
         now: Instant,
         channel: Channel,
         robot: RobotId,
-        spi: S,
-        chip_enable: C,
-        pause: D,
+        (spi, chip_enable, pause): (S, C, D),
     ) -> Result<Self, Fault> {
         let mut radio = Self {
             lines: Lines::new(spi, chip_enable, pause),
             channel,
             number: robot,
             cutter: Cutter::new(channel.team),
-            own: Assembler::new(channel.team, PATIENCE),
-            everyone: Assembler::new(channel.team, PATIENCE),
+            own: Assembler::new(channel.team, ASSEMBLY_TIME_MAX),
+            everyone: Assembler::new(channel.team, ASSEMBLY_TIME_MAX),
             waiting: heapless::Deque::new(),
             given: 0,
             asked: now,
@@ -113,7 +111,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
         Ok(None)
     }
 
-    /// What was dropped so far.
+    /// Counts since the start.
     pub fn counts(&self) -> RobotCounts {
         RobotCounts { own: self.own.joined(), everyone: self.everyone.joined(), ..self.counts }
     }
@@ -121,14 +119,14 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
     /// Gives the chip what it answers with next.
     fn answer(&mut self, now: Instant) -> Result<(), Fault> {
         self.lines.radio.clear_status_flags(StatusFlags::default().with_tx_ds(true))?;
-        if now.since(self.asked) > STALE {
+        if now.since(self.asked) > WAIT_MAX {
             // No base station asks: what waits would be out of date when one does, in the chip too.
             self.asked = now;
             self.lines.radio.flush_tx()?;
             self.drop_first_if(self.given > 0);
         }
         while let Some((since, fragments)) = self.waiting.front() {
-            if self.given == 0 && now.since(*since) > STALE {
+            if self.given == 0 && now.since(*since) > WAIT_MAX {
                 self.drop_first_if(true);
                 continue;
             }
@@ -153,15 +151,14 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
     }
 }
 
-/// Interval at which a radio is served where its line IRQ says nothing.
+/// Interval at which a radio is served while its line IRQ stays high.
 pub const SERVE_EVERY: Duration = Duration::millis(1);
-/// A beacon or telemetry of more than this age is not sent: two of a robot's telemetry periods pass, and the
-/// next one says more.
-const STALE: Duration = Duration::millis(100);
+/// Longest wait of a beacon or telemetry: two of a robot's telemetry periods, after which a newer one is there.
+const WAIT_MAX: Duration = Duration::millis(100);
 /// Own frames that wait: a beacon, telemetry, a handshake and a part of a decision.
 const WAITING_MAX: usize = 4;
-/// From a frame's first fragment to its last: four with every repeat take 6 ms; and the base station sends 32
-/// frames in no less than 30 ms.
-const PATIENCE: Duration = Duration::millis(8);
-/// How often the chip is asked whether it still has its registers.
+/// Longest time from a frame's first fragment to its last: four with every repeat take 6 ms; and the base
+/// station sends 32 frames in no less than 30 ms.
+const ASSEMBLY_TIME_MAX: Duration = Duration::millis(8);
+/// Period in which the chip's registers are checked.
 const CHECK_EVERY: Duration = Duration::millis(100);

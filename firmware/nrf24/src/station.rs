@@ -10,7 +10,7 @@ use protocol::serial::{Line, Lines, line};
 use crate::base::{Base, BaseCounts};
 use crate::chip::Fault;
 
-/// A base station.
+/// Base station between the host's serial line and the chip.
 #[allow(missing_debug_implementations, reason = "the chip's driver has none")]
 pub struct Station<S, C, D> {
     base: Base<S, C, D>,
@@ -19,7 +19,7 @@ pub struct Station<S, C, D> {
 }
 
 impl<S: SpiDevice, C: OutputPin, D: DelayNs> Station<S, C, D> {
-    /// With a radio that is set up.
+    /// A station with a radio that is set up.
     pub fn new(base: Base<S, C, D>) -> Self {
         Self { base, lines: Lines::new(), refused: 0 }
     }
@@ -40,7 +40,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Station<S, C, D> {
         Ok(self.base.poll(now)?.map(|frame| line(&frame)))
     }
 
-    /// What the radio sent and dropped.
+    /// Counts of the radio so far.
     pub fn counts(&self) -> BaseCounts {
         self.base.counts()
     }

@@ -2,7 +2,7 @@
 //! every datagram of the host goes to all robots, every datagram of a robot to the host.
 //!
 //! A robot is known by the address of its last datagram, the host by its own: both speak first, as robots
-//! tell of themselves before a host commands them. Nothing is decoded: frames carry their own tags.
+//! send beacons before a host commands them. Nothing is decoded: frames carry their own tags.
 
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
@@ -11,19 +11,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// A robot that was silent for this long is gone: a robot on wheels sends twenty beacons a second.
-const GONE: Duration = Duration::from_secs(5);
-/// Time a thread waits between checks whether it shall end.
-const LOOK: Duration = Duration::from_millis(50);
+/// Silence after which a robot is gone: a robot on wheels sends twenty beacons a second.
+const ROBOT_TIMEOUT: Duration = Duration::from_secs(5);
+/// Longest wait of a thread before it checks whether it shall end.
+const END_CHECK_PERIOD: Duration = Duration::from_millis(50);
 /// Longest datagram that is passed on, bytes: longer ones are no frames (`protocol::frame`).
 const LEN_MAX: usize = protocol::frame::FRAME_LEN_MAX;
 
 /// Datagrams that were passed on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PassedCounts {
-    /// Of the host, each counted once however many robots there were.
+    /// Datagrams of the host, each counted once however many robots there were.
     pub from_host: u64,
-    /// Of robots, while a host was known.
+    /// Datagrams of robots, while a host was known.
     pub from_robots: u64,
 }
 
@@ -45,66 +45,64 @@ struct Shared {
     from_robots: AtomicU64,
 }
 
+impl Shared {
+    fn pass_to_robots(&self, host: &UdpSocket, robots: &UdpSocket) {
+        pass(host, &self.end, |bytes, from| {
+            *lock(&self.host) = Some(from);
+            self.from_host.fetch_add(1, Ordering::Relaxed);
+            for (robot, _) in lock(&self.robots).iter() {
+                // A queue that is full loses a frame, as any air does.
+                let _ = robots.send_to(bytes, robot);
+            }
+        });
+    }
+
+    fn pass_to_host(&self, robots: &UdpSocket, host: &UdpSocket) {
+        pass(robots, &self.end, |bytes, from| {
+            let now = Instant::now();
+            let mut known = lock(&self.robots);
+            known.retain(|(robot, at)| *robot != from && now.duration_since(*at) < ROBOT_TIMEOUT);
+            known.push((from, now));
+            drop(known);
+            let to = *lock(&self.host);
+            if let Some(to) = to {
+                self.from_robots.fetch_add(1, Ordering::Relaxed);
+                let _ = host.send_to(bytes, to);
+            }
+        });
+    }
+}
+
 impl AccessPoint {
     /// Takes the host's datagrams at `address`, and robots' at a port of this machine that is free.
     pub fn open(address: SocketAddr) -> io::Result<Self> {
         let host = Arc::new(UdpSocket::bind(address)?);
         let robots = Arc::new(UdpSocket::bind("127.0.0.1:0")?);
         for socket in [&host, &robots] {
-            socket.set_read_timeout(Some(LOOK))?;
+            socket.set_read_timeout(Some(END_CHECK_PERIOD))?;
         }
         let (for_host, for_robots) = (host.local_addr()?, robots.local_addr()?);
         let shared = Arc::new(Shared::default());
-        let down = {
-            let (host, robots, shared) = (host.clone(), robots.clone(), shared.clone());
-            move || {
-                pass(&host, &shared.end, |bytes, from| {
-                    *lock(&shared.host) = Some(from);
-                    shared.from_host.fetch_add(1, Ordering::Relaxed);
-                    for (robot, _) in lock(&shared.robots).iter() {
-                        // A queue that is full loses a frame, as any air does.
-                        let _ = robots.send_to(bytes, robot);
-                    }
-                });
-            }
-        };
-        let up = {
-            let shared = shared.clone();
-            move || {
-                pass(&robots, &shared.end, |bytes, from| {
-                    let now = Instant::now();
-                    let mut known = lock(&shared.robots);
-                    known.retain(|(robot, at)| *robot != from && now.duration_since(*at) < GONE);
-                    known.push((from, now));
-                    drop(known);
-                    let to = *lock(&shared.host);
-                    if let Some(to) = to {
-                        shared.from_robots.fetch_add(1, Ordering::Relaxed);
-                        let _ = host.send_to(bytes, to);
-                    }
-                });
-            }
-        };
-        let spawn = |name: &str, work: Box<dyn FnOnce() + Send>| {
-            thread::Builder::new().name(name.to_owned()).spawn(work)
-        };
-        let mut point = Self { for_host, for_robots, shared, threads: Vec::new() };
-        point.threads.push(spawn("to-robots", Box::new(down))?);
-        point.threads.push(spawn("to-host", Box::new(up))?);
+        let mut point = Self { for_host, for_robots, shared: shared.clone(), threads: Vec::new() };
+        let (from, to, state) = (host.clone(), robots.clone(), shared.clone());
+        let to_robots = thread::Builder::new().name("to-robots".to_owned());
+        point.threads.push(to_robots.spawn(move || state.pass_to_robots(&from, &to))?);
+        let to_host = thread::Builder::new().name("to-host".to_owned());
+        point.threads.push(to_host.spawn(move || shared.pass_to_host(&robots, &host))?);
         Ok(point)
     }
 
-    /// Where the host sends, and what answers it.
+    /// Address to which the host sends, and from which it is answered.
     pub fn for_host(&self) -> SocketAddr {
         self.for_host
     }
 
-    /// Where robots send.
+    /// Address to which robots send.
     pub fn for_robots(&self) -> SocketAddr {
         self.for_robots
     }
 
-    /// What was passed on so far.
+    /// Counts of passed frames so far.
     pub fn counts(&self) -> PassedCounts {
         PassedCounts {
             from_host: self.shared.from_host.load(Ordering::Relaxed),
@@ -127,7 +125,7 @@ fn lock<T>(value: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 fn pass(socket: &UdpSocket, end: &AtomicBool, mut to: impl FnMut(&[u8], SocketAddr)) {
-    // One byte more than a frame has, so that a longer datagram is told from one.
+    // One byte more than a frame has, so that a longer datagram is noticed.
     let mut bytes = [0; LEN_MAX + 1];
     while !end.load(Ordering::Relaxed) {
         // A time-out, or a receiver that was not running: try again.

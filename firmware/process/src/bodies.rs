@@ -21,7 +21,7 @@ use crate::body::{SimulatedBody, TICK};
 /// A brain that gives no orders for this long has stopped: its body stands.
 const ORDERS_HOLD: Span = Span::millis(100);
 /// The thread looks for datagrams this often.
-const LOOK: Duration = Duration::from_millis(1);
+const POLL_PERIOD: Duration = Duration::from_millis(1);
 /// The longest datagram that is read: the league's programs send no longer ones.
 const LEN_MAX: usize = 8192;
 
@@ -94,7 +94,7 @@ impl Bodies {
         Ok(Self { addresses, end, thread: Some(thread) })
     }
 
-    /// Where each robot's brain sends its orders.
+    /// Addresses to which the robots' brains send their orders.
     pub fn addresses(&self) -> &[(RobotId, SocketAddr)] {
         &self.addresses
     }
@@ -147,7 +147,7 @@ fn run(outer: &UdpSocket, simulator: SocketAddr, seats: &mut [Seat], end: &Atomi
             // A delayed thread does not catch up: missed steps are skipped.
             due = if now().since(due) < TICK { due + TICK } else { now() + TICK };
         }
-        thread::sleep(LOOK);
+        thread::sleep(POLL_PERIOD);
     }
 }
 

@@ -25,12 +25,12 @@ use ssl::simulation::{
 
 /// Between two commands, and between two sensor frames.
 pub const TICK: Duration = WHEELED_STEP;
-/// How long the last report of ball contact holds: five responses in a row are lost once in 100,000 at the 10
-/// % loss of ER-Force's "realistic".
+/// Validity of the last report of ball contact: five responses in a row are lost once in 100,000 at the 10 %
+/// loss of ER-Force's "realistic".
 const CONTACT_HOLDS: Duration = Duration::millis(50);
-/// Of a dribbler's full speed, rpm.
+/// Full speed of a dribbler, rpm.
 const DRIBBLER_FULL: f32 = RobotSpec::OURS.dribbler.full_rpm;
-/// Of a chip kick, degrees above the ground.
+/// Angle of a chip kick, degrees above the ground.
 const CHIP_ANGLE: f32 = RobotSpec::OURS.kicker.chip_degrees;
 /// No simulated kicker and no robot is faster: what is beyond is a mistake, m/s.
 const SPEED_MAX: f32 = 10.0;

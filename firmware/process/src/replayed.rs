@@ -1,8 +1,6 @@
 //! `replayed`: comparison of a robot's journal with a native brain: the native brain gets what the robot's
 //! was given, at the same times, and its outputs are compared byte by byte.
 
-use std::fmt;
-
 use brain::{BrainConfig, Station};
 use casebase::CaseBase;
 use protocol::Instant;
@@ -10,7 +8,7 @@ use protocol::frame::RobotKeys;
 use protocol::journal::{Entry, JournalError, records};
 use protocol::robot_io::ActuatorFrame;
 
-/// What a journal holds that both brains did alike.
+/// Counts of what both brains did alike.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Replayed {
     /// Boot epochs of the robot: one, unless it restarted.
@@ -29,40 +27,29 @@ pub struct Replayed {
     pub last: Instant,
 }
 
-/// Why a journal cannot be called the work of that brain.
-#[derive(Clone, Debug, PartialEq)]
+/// Reason why a journal cannot be called the work of that brain.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReplayError {
-    /// It cannot be read.
+    /// The journal cannot be read.
+    #[error("{0}")]
     Journal(JournalError),
-    /// It does not begin with the brain's start.
+    /// The journal does not begin with the brain's start.
+    #[error("the journal does not begin with the brain's start")]
     NoStart,
     /// The robot's memory was full at that time.
+    #[error("the robot's memory for the journal was full at {} µs", .0.0)]
     Full(Instant),
-    /// An output differs.
+    /// An output of the robot differs.
+    #[error("at {} µs the robot {robot}, the native brain {native}", at.0)]
     Differs {
-        /// By the robot's clock.
+        /// Time by the robot's clock.
         at: Instant,
-        /// What the robot did, as text.
+        /// Output of the robot, as text.
         robot: String,
-        /// What the native brain did, as text.
+        /// Output of the native brain, as text.
         native: String,
     },
 }
-
-impl fmt::Display for ReplayError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Journal(error) => write!(f, "{error}"),
-            Self::NoStart => f.write_str("the journal does not begin with the brain's start"),
-            Self::Full(at) => write!(f, "the robot's memory for the journal was full at {} µs", at.0),
-            Self::Differs { at, robot, native } => {
-                write!(f, "at {} µs the robot {robot}, the native brain {native}", at.0)
-            }
-        }
-    }
-}
-
-impl std::error::Error for ReplayError {}
 
 /// Plays a journal again; the configuration's epoch is taken from it.
 pub fn replay(
@@ -181,7 +168,7 @@ fn differs<T>(at: Instant, robot: String, native: String) -> Result<T, ReplayErr
     Err(ReplayError::Differs { at, robot, native })
 }
 
-/// FNV-1a, 64 bits.
+/// Folds bytes and their time into a hash: FNV-1a, 64 bits.
 fn hash(hash: &mut u64, at: Instant, bytes: &[u8]) {
     for byte in at.0.to_le_bytes().iter().chain(bytes) {
         *hash = (*hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);

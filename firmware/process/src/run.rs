@@ -1,6 +1,5 @@
 //! `run`: main loop of a virtual robot. One socket for host and simulator, one thread, the system's clock.
 
-use std::fmt;
 use std::io::{self, BufRead as _};
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::Arc;
@@ -19,7 +18,7 @@ use crate::robot::VirtualRobot;
 pub struct Options {
     /// Configuration of its brain.
     pub brain: BrainConfig,
-    /// Its radio keys: one with the host, one with the team.
+    /// Radio keys: one with the host, one with the team.
     pub keys: RobotKeys,
     /// Address of the host.
     pub host: SocketAddr,
@@ -34,26 +33,12 @@ pub enum ProcessEnd {
     Asked,
 }
 
-/// Why a robot cannot run.
-#[derive(Debug)]
+/// Reason why a robot cannot run.
+#[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// A socket could not be opened.
-    Socket(io::Error),
-}
-
-impl fmt::Display for RunError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Socket(error) => write!(f, "the robot has no socket: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for RunError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        let Self::Socket(error) = self;
-        Some(error)
-    }
+    #[error("the robot has no socket: {0}")]
+    Socket(#[source] io::Error),
 }
 
 /// A flag that is raised when standard input closes: the parent process has gone, or requests the end.

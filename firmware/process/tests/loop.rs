@@ -29,7 +29,7 @@ fn base() -> CaseBase<'static> {
 }
 
 #[test]
-fn a_robot_no_one_speaks_to_commands_its_body_a_hundred_times_a_second_and_stands() {
+fn a_robot_without_a_host_orders_its_body_100_times_a_second_to_stand() {
     let mut robot = VirtualRobot::new(Instant(0), &config(), base(), KEY.of_robot(id()));
     let (mut commands, mut frames) = (0, 0);
     while robot.poll_timeout() < Instant(1_000_000) {
@@ -44,7 +44,7 @@ fn a_robot_no_one_speaks_to_commands_its_body_a_hundred_times_a_second_and_stand
         }
     }
     assert_eq!(commands, 100);
-    assert!(frames > 0, "whoever commands must learn that it is there");
+    assert!(frames > 0, "a host must learn that the robot is there");
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn random_datagrams_are_survived_and_counted() {
 }
 
 #[test]
-fn over_a_socket_it_is_received_by_its_host_and_its_simulator_and_ends_when_asked() {
+fn over_sockets_a_robot_reaches_host_and_simulator_and_ends_on_request() {
     let socket = || {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         socket.set_read_timeout(Some(Duration::from_secs(5))).unwrap();

@@ -2,7 +2,7 @@
 //! on its own: `cargo run -p onetwo-runtime --example bring_up -- reversed-motor`.
 //!
 //! With `--udp 127.0.0.1:10400 --page robot.page` it waits there for a host, plays them in real time and
-//! tells them as a board does by radio: `onetwo robot bring-up --robots udp://127.0.0.1:10400 …` shows them.
+//! reports them as a board does by radio: `onetwo robot bring-up --robots udp://127.0.0.1:10400 …` shows them.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::process::ExitCode;
@@ -20,8 +20,8 @@ fn main() -> ExitCode {
     match run() {
         Ok(0) => ExitCode::SUCCESS,
         Ok(_) => ExitCode::FAILURE,
-        Err(description) => {
-            eprintln!("{description}");
+        Err(message) => {
+            eprintln!("{message}");
             ExitCode::from(2)
         }
     }
@@ -60,17 +60,17 @@ fn run() -> Result<u32, String> {
             steps += 1;
             let due = Duration::from_millis(u64::from(steps)).saturating_sub(began.elapsed());
             std::thread::sleep(due);
-            // A radio that is off tells nothing.
+            // A radio that is off sends nothing.
             if fault != Fault::NoRadio && u64::from(steps).is_multiple_of(REPORT_EVERY.0 / 1_000) {
-                radio.tell();
+                radio.report();
             }
         }
     });
     println!("{failed} failed; it takes {:.0} s", took.0 as f64 * 1e-6);
     if let Some(mut radio) = radio.filter(|_| fault != Fault::NoRadio) {
-        // A board tells them until it is switched off.
-        while began.elapsed() < Duration::from_micros(took.0) + TELLS {
-            radio.tell();
+        // A board reports them until it is switched off.
+        while began.elapsed() < Duration::from_micros(took.0) + REPORT_AFTER_END {
+            radio.report();
             std::thread::sleep(Duration::from_micros(REPORT_EVERY.0));
         }
     }
@@ -105,17 +105,17 @@ impl Radio {
         let (len, host) = socket.recv_from(&mut bytes).map_err(failed)?;
         socket.set_nonblocking(true).map_err(failed)?;
         let mut listener = Listener::default();
-        listener.hear(bytes.get(..len).unwrap_or_default());
+        listener.receive(bytes.get(..len).unwrap_or_default());
         // A board counts its starts in flash.
         let start = SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |unix| unix.as_secs() as u32);
         let reporter = Reporter { team: who.team, robot: who.robot, key: who.keys.host, epoch: start };
         Ok(Self { socket, host, listener, team: who.team, results: Results::new(reporter) })
     }
 
-    fn tell(&mut self) {
+    fn report(&mut self) {
         let mut bytes = [0; 200];
         while let Ok((len, from)) = self.socket.recv_from(&mut bytes) {
-            self.listener.hear(bytes.get(..len).unwrap_or_default());
+            self.listener.receive(bytes.get(..len).unwrap_or_default());
             self.host = from;
         }
         if let Some(packet) = self.results.packet(self.listener.host_epoch(self.team)) {
@@ -125,5 +125,5 @@ impl Radio {
     }
 }
 
-/// The results are told for so long after the last check.
-const TELLS: Duration = Duration::from_secs(5);
+/// Time for which the results are reported after the last check.
+const REPORT_AFTER_END: Duration = Duration::from_secs(5);

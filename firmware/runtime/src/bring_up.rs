@@ -4,7 +4,7 @@
 //!
 //! Each check takes what the board's ports measure ([`Reading`]), drives at most one wheel, and ends with
 //! what it measured or with what is wrong ([`Finding`]) and what to look at. No check waits for ever, and
-//! none depends on another: one broken part hides no other. [`Results`] tells the host how each stands.
+//! none depends on another: one broken part hides no other. [`Results`] reports the state of each to the host.
 //! [`mod@bench`] is a robot of simulated parts with faults to plant.
 
 pub mod bench;
@@ -22,12 +22,12 @@ pub use results::{REPORT_EVERY, Results};
 use crate::ports::Seen;
 use crate::wheel::{Motors, WHEELS};
 
-/// What the board's ports measured in a step.
+/// Measurements of the board's ports in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// Rim speeds, m/s; NaN where an encoder is known to be broken.
     pub rims: [f32; WHEELS],
-    /// The probes.
+    /// Readings of the probes.
     pub seen: Seen,
     /// The radio so far.
     pub radio: RadioCounts,
@@ -36,7 +36,7 @@ pub struct Reading {
 /// Counts of the radio since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RadioCounts {
-    /// Frames received whole.
+    /// Frames that were received whole.
     pub received: u32,
     /// Frames that are missing between them, by their numbers.
     pub lost: u32,
@@ -44,7 +44,7 @@ pub struct RadioCounts {
     pub line_errors: u32,
 }
 
-/// What the board does until the next step.
+/// Output of the board until the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchStep {
     /// Motors: at most one of them is driven.
@@ -65,14 +65,14 @@ pub struct BringUp {
     count: u16,
     /// The radio's counts when its check began.
     radio: RadioCounts,
-    /// How long the beam was interrupted.
+    /// Time since which the beam is interrupted.
     interrupted: Option<(Instant, bool)>,
     /// The check's result, while the wheel runs down.
     pending: Option<Result<f32, Finding>>,
 }
 
 impl BringUp {
-    /// Before the first check.
+    /// Checks of which none has started.
     pub const fn new() -> Self {
         Self {
             next: 0,
@@ -85,7 +85,7 @@ impl BringUp {
         }
     }
 
-    /// One step, 1 ms after the last: takes what was measured since, and says what to drive.
+    /// One step, 1 ms after the last: takes what was measured since, and returns what to drive.
     pub fn step(&mut self, now: Instant, reading: &Reading) -> BenchStep {
         let Some(check) = CHECKS.get(self.next).copied() else {
             return BenchStep { motors: Motors::Released, report: None, check: None };
@@ -110,10 +110,10 @@ impl BringUp {
     }
 
     fn rest(&mut self, passed: Duration, reading: &Reading) -> Option<Result<f32, Finding>> {
-        if passed + WINDOW >= RESTS {
+        if passed + MEAN_WINDOW >= REST_TIME {
             self.add(reading.rims);
         }
-        if passed < RESTS {
+        if passed < REST_TIME {
             return None;
         }
         let means = self.means();
@@ -121,7 +121,7 @@ impl BringUp {
             if !mean.is_finite() {
                 return Some(Err(Finding::NoEncoder(wheel)));
             }
-            if mean.abs() > STANDS {
+            if mean.abs() > STANDING_SPEED_MAX {
                 return Some(Err(Finding::MovesAlone(wheel, mean)));
             }
         }
@@ -141,13 +141,13 @@ impl BringUp {
         forwards: bool,
     ) -> (Option<Result<f32, Finding>>, Motors) {
         let sign = if forwards { 1.0 } else { -1.0 };
-        if passed < DRIVEN {
-            if passed + WINDOW >= DRIVEN {
+        if passed < DRIVE_TIME {
+            if passed + MEAN_WINDOW >= DRIVE_TIME {
                 self.add(reading.rims);
             }
             let mut duty = [0.0; WHEELS];
             if let Some(one) = duty.get_mut(usize::from(wheel)) {
-                *one = sign * DUTY;
+                *one = sign * WHEEL_DUTY;
             }
             return (None, Motors::Driven(duty));
         }
@@ -158,16 +158,16 @@ impl BringUp {
             .into_iter()
             .filter(|speed| speed.is_finite())
             .fold(0.0_f32, |most, speed| if speed.abs() > most.abs() { speed } else { most });
-        if fastest.abs() <= STANDS {
+        if fastest.abs() <= STANDING_SPEED_MAX {
             return (Some(result), Motors::Released);
         }
-        let late = passed >= DRIVEN + RUNS_DOWN;
+        let late = passed >= DRIVE_TIME + RUN_DOWN_MAX;
         let result = result.and(Err(Finding::KeepsTurning(fastest)));
         (late.then_some(result), Motors::Released)
     }
 
     fn radio(&mut self, passed: Duration, counts: RadioCounts) -> Option<Result<f32, Finding>> {
-        if passed < LISTENS {
+        if passed < RADIO_TIME {
             return None;
         }
         let received = counts.received.wrapping_sub(self.radio.received);
@@ -175,9 +175,9 @@ impl BringUp {
         let errors = counts.line_errors.wrapping_sub(self.radio.line_errors);
         Some(if received == 0 && errors == 0 {
             Err(Finding::Silent)
-        } else if errors > received / LINE_ERRORS_ONE_IN {
+        } else if errors > received / FRAMES_PER_LINE_ERROR_MIN {
             Err(Finding::LineErrors(errors, received))
-        } else if lost > (received + lost) / LOSS_ONE_IN {
+        } else if lost > (received + lost) / FRAMES_PER_LOSS_MIN {
             Err(Finding::Loses(received, lost))
         } else {
             Ok(received as f32)
@@ -186,26 +186,26 @@ impl BringUp {
 
     fn beam(&mut self, now: Instant, passed: Duration, ball: bool) -> Option<Result<f32, Finding>> {
         match self.interrupted {
-            None if passed < SETTLES => None,
-            None if passed < SETTLES + WINDOW => {
-                // A ball that is there from the start tells nothing.
+            None if passed < SETTLE_TIME => None,
+            None if passed < SETTLE_TIME + MEAN_WINDOW => {
+                // A beam that is interrupted from the start proves nothing.
                 if ball { Some(Err(Finding::Blocked)) } else { None }
             }
             None if ball => {
                 self.interrupted = Some((now, false));
                 None
             }
-            None => (passed >= PERSON).then_some(Err(Finding::NeverInterrupted)),
+            None => (passed >= BALL_TIMEOUT).then_some(Err(Finding::NeverInterrupted)),
             Some((since, _)) if !ball => {
                 let held = now.since(since);
-                if held >= HELD {
+                if held >= BALL_HELD_MIN {
                     return Some(Ok(held.0 as f32 * 1e-6));
                 }
                 // A hand that passes by is no ball.
                 self.interrupted = None;
                 None
             }
-            Some(_) => (passed >= PERSON).then_some(Err(Finding::StaysInterrupted)),
+            Some(_) => (passed >= BALL_TIMEOUT).then_some(Err(Finding::StaysInterrupted)),
         }
     }
 
@@ -228,21 +228,21 @@ impl Default for BringUp {
     }
 }
 
-/// What the divider says.
+/// Result of the battery's check, from the voltage divider.
 fn battery(passed: Duration, seen: &Seen) -> Option<Result<f32, Finding>> {
     let Some(volts) = seen.battery.filter(|volts| volts.is_finite()) else {
-        return (passed >= SETTLES).then_some(Err(Finding::NoVoltage));
+        return (passed >= SETTLE_TIME).then_some(Err(Finding::NoVoltage));
     };
-    if passed < SETTLES {
+    if passed < SETTLE_TIME {
         return None;
     }
     Some(if (BATTERY_LOW..=BATTERY_FULL).contains(&volts) { Ok(volts) } else { Err(Finding::Voltage(volts)) })
 }
 
-/// What four encoders say of one driven wheel.
+/// Result of a wheel's check, from the mean speeds of all four while it was driven.
 fn judge(means: [f32; WHEELS], wheel: usize, sign: f32) -> Result<f32, Finding> {
-    let expected = DUTY * RobotSpec::OURS.wheels.free_speed;
-    let moves = |speed: f32| speed.abs() > expected * MOVES;
+    let expected = WHEEL_DUTY * RobotSpec::OURS.wheels.free_speed;
+    let moves = |speed: f32| speed.abs() > expected * MOVING_SHARE_MIN;
     let own = means.get(wheel).copied().unwrap_or(f32::NAN);
     let other = (0..).zip(means).filter(|(i, _)| usize::from(*i) != wheel).find(|(_, speed)| moves(*speed));
     match other {
@@ -251,7 +251,7 @@ fn judge(means: [f32; WHEELS], wheel: usize, sign: f32) -> Result<f32, Finding> 
         None if !own.is_finite() => Err(Finding::NoEncoder(wheel as u8)),
         None if !moves(own) => Err(Finding::NoMotion),
         None if own * sign < 0.0 => Err(Finding::Reversed(own)),
-        None if !(expected * SLOWEST..=expected * FASTEST).contains(&own.abs()) => {
+        None if !(expected * SPEED_SHARE_MIN..=expected * SPEED_SHARE_MAX).contains(&own.abs()) => {
             Err(Finding::Speed(own, sign * expected))
         }
         None => Ok(own),
@@ -260,35 +260,37 @@ fn judge(means: [f32; WHEELS], wheel: usize, sign: f32) -> Result<f32, Finding> 
 
 /// Duty of a driven wheel, share of the battery's voltage: 1 m/s at the rim without load, slow enough for
 /// fingers to be withdrawn.
-const DUTY: f32 = 0.16;
-/// A sensor's first readings are not used.
-const SETTLES: Duration = Duration::millis(200);
-/// Readings are averaged over so long.
-const WINDOW: Duration = Duration::millis(200);
-/// The gyroscope needs half a second at rest for its offset ([`crate::sense::Turn`]).
-const RESTS: Duration = Duration::millis(1_500);
-/// A wheel is driven for so long: ten times the motors' time constant (30 ms, estimate) and the window.
-const DRIVEN: Duration = Duration::millis(500);
-/// Without current a wheel stands after so long.
-const RUNS_DOWN: Duration = Duration::millis(1_000);
-/// The radio is listened to for so long: 200 snapshots of a host at its full rate.
-const LISTENS: Duration = Duration::millis(2_000);
-/// A person has so long for the ball.
-const PERSON: Duration = Duration::millis(20_000);
-/// A ball is held for so long.
-const HELD: Duration = Duration::millis(300);
-/// Full, V; from [`BATTERY_LOW`] on the governor lets the robot play.
+const WHEEL_DUTY: f32 = 0.16;
+/// Start of each check in which readings are not used.
+const SETTLE_TIME: Duration = Duration::millis(200);
+/// Window over which readings are averaged.
+const MEAN_WINDOW: Duration = Duration::millis(200);
+/// Length of the check at rest: the gyroscope needs half a second for its offset
+/// ([`crate::sense::GyroOffset`]).
+const REST_TIME: Duration = Duration::millis(1_500);
+/// Time for which a wheel is driven: ten times the motors' time constant (30 ms, estimate) and the window.
+const DRIVE_TIME: Duration = Duration::millis(500);
+/// Time after which a wheel without current must stand.
+const RUN_DOWN_MAX: Duration = Duration::millis(1_000);
+/// Length of the radio's check: 200 snapshots of a host at its full rate.
+const RADIO_TIME: Duration = Duration::millis(2_000);
+/// Time that a person has to hold a ball before the dribbler.
+const BALL_TIMEOUT: Duration = Duration::millis(20_000);
+/// Shortest interruption of the beam that is a held ball.
+const BALL_HELD_MIN: Duration = Duration::millis(300);
+/// Voltage of a full battery, V; from [`BATTERY_LOW`] on the governor lets the robot play.
 const BATTERY_FULL: f32 = RobotSpec::OURS.battery.full;
-/// A wheel stands below this speed, m/s: a count of the encoder in a window is a tenth of it.
-const STANDS: f32 = 0.02;
-/// The gyroscope's error at rest, rad/s: ten times the noise of the usual chips.
+/// Largest rim speed of a standing wheel, m/s: a count of the encoder in a window is a tenth of it.
+const STANDING_SPEED_MAX: f32 = 0.02;
+/// Largest rate of a gyroscope at rest, rad/s: ten times the noise of common chips.
 const DRIFT_MAX: f32 = 0.05;
-/// A wheel moves from this share of the expected speed on.
-const MOVES: f32 = 0.2;
-/// Motors, batteries and friction without load differ by less.
-const SLOWEST: f32 = 0.5;
-const FASTEST: f32 = 1.6;
-/// More than one frame in so many lost is no healthy link (docs/start.md shows 10 % in red).
-const LOSS_ONE_IN: u32 = 10;
-/// More line errors than one for so many frames come from the line, not from the air.
-const LINE_ERRORS_ONE_IN: u32 = 50;
+/// Share of the expected speed from which a wheel moves.
+const MOVING_SHARE_MIN: f32 = 0.2;
+/// Smallest share of the expected speed that motors, batteries and friction without load explain.
+const SPEED_SHARE_MIN: f32 = 0.5;
+/// Largest share of the expected speed that they explain.
+const SPEED_SHARE_MAX: f32 = 1.6;
+/// Frames for each lost one on a healthy link, at least (docs/start.md shows 10 % in red).
+const FRAMES_PER_LOSS_MIN: u32 = 10;
+/// Frames for each error on a healthy line to the radio, at least; more errors do not come from the air.
+const FRAMES_PER_LINE_ERROR_MIN: u32 = 50;

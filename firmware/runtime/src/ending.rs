@@ -47,7 +47,7 @@ mod tests {
     use std::format;
 
     #[test]
-    fn a_place_is_reported_as_file_and_line_and_a_fault_by_its_counter_as_far_as_there_is_room() {
+    fn a_crash_is_written_as_file_and_line_or_program_counter_as_far_as_it_fits() {
         let here = Location::caller();
         let mut text = [0; 96];
         let len = Ending::Panic(Some(here)).write(&mut text);

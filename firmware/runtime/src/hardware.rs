@@ -4,7 +4,7 @@
 //! ```text
 //! brain ─► orders ─► control (1 kHz) ─► wheels, dribbler
 //!                      │  └─ rims ─► senses (100 Hz) ─► inbox ─► brain
-//!                      └─ wish ─► kicker (1 kHz) ─► capacitor, coils
+//!                      └─ request ─► kicker (1 kHz) ─► capacitor, coils
 //! control, radio, brain ─► progress ─► watchdog
 //! ```
 //!
@@ -32,12 +32,12 @@ use crate::wheel::{CONTROL_PERIOD, Control, Motors, WHEELS};
 pub struct Wires {
     /// Measured rim speeds, m/s.
     rims: Signal<CriticalSectionRawMutex, [f32; WHEELS]>,
-    /// Kicker request.
+    /// Newest request to the kicker.
     request: Signal<CriticalSectionRawMutex, OmniKick>,
 }
 
 impl Wires {
-    /// Without any signal yet.
+    /// Signals of which none is set.
     pub const fn new() -> Self {
         Self { rims: Signal::new(), request: Signal::new() }
     }
@@ -57,13 +57,13 @@ pub async fn control(mut wheels: impl WheelsPort, boxes: &Mailboxes, wires: &Wir
     loop {
         ticker.next().await;
         let now = now();
-        if let Some(order) = boxes.orders.try_take() {
-            control.order(now, order);
+        if let Some(orders) = boxes.orders.try_take() {
+            control.take_orders(now, orders);
         }
         let measured = wheels.measured();
         let step = control.step(now, measured);
         match step.motors {
-            Motors::Driven(rule_role) => wheels.drive(rule_role, step.dribbler),
+            Motors::Driven(duty) => wheels.drive(duty, step.dribbler),
             Motors::Released => wheels.release(),
         }
         wires.rims.signal(measured);
@@ -77,7 +77,7 @@ pub async fn kicker(mut kicker: impl Kicker, wires: &Wires) -> ! {
     let mut interlock = Interlock::new();
     loop {
         // The control loop requests it every millisecond; once it stops, the kicker must not fire.
-        let request = match select(wires.request.wait(), Timer::after(SILENT)).await {
+        let request = match select(wires.request.wait(), Timer::after(CONTROL_SILENT_AFTER)).await {
             Either::First(request) => request,
             Either::Second(()) => OmniKick::Discharge,
         };
@@ -106,7 +106,7 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
         // A gyroscope measures the turning rate better than four wheels, where there is one.
         let odometry: Twist<Body> = Twist { linear, angular: seen.turn.unwrap_or(angular) };
         let health = Health { battery: seen.battery, tipped: seen.tipped, kicker_ready: seen.kicker_ready };
-        let snapshot = SensorFrame {
+        let sensors = SensorFrame {
             pose: None,
             ball: None,
             opponents: heapless::Vec::new(),
@@ -117,12 +117,12 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
             camera: None,
         };
         boxes.room_for_arrival().await;
-        boxes.deliver(Arrival::Sensors(snapshot));
+        boxes.deliver(Arrival::Sensors(sensors));
     }
 }
 
-/// As [`tasks::radio_receive`](crate::tasks::radio_receive), and reports that it listens, whether it receives
-/// something or not.
+/// Receives as [`tasks::radio_receive`](crate::tasks::radio_receive) does, and reports that it listens,
+/// whether it receives something or not.
 pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> ! {
     loop {
         let packet = {
@@ -130,7 +130,8 @@ pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> 
             let mut next = pin!(radio.receive());
             loop {
                 boxes.progress.mark(RobotPart::Radio);
-                if let Either::First(packet) = select(next.as_mut(), Timer::after(LISTENS)).await {
+                if let Either::First(packet) = select(next.as_mut(), Timer::after(RADIO_REPORT_PERIOD)).await
+                {
                     break packet;
                 }
             }
@@ -140,9 +141,9 @@ pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> 
     }
 }
 
-/// Feeds the watchdog as long as control, radio and brain all run. Its time-out is [`Watchdog::PATIENCE`].
+/// Feeds the watchdog as long as control, radio and brain all run.
 pub async fn watchdog<D: Watchdog>(mut watchdog: D, boxes: &Mailboxes) -> ! {
-    let mut ticker = Ticker::every(Duration::from_micros(D::PATIENCE.0 / LOOKS_A_PATIENCE));
+    let mut ticker = Ticker::every(Duration::from_micros(D::TIMEOUT.0 / CHECKS_PER_TIMEOUT));
     loop {
         ticker.next().await;
         if boxes.progress.all() {
@@ -154,11 +155,11 @@ pub async fn watchdog<D: Watchdog>(mut watchdog: D, boxes: &Mailboxes) -> ! {
 /// The brain's pace on wheels (docs/architecture.md §2.3).
 const BRAIN_PERIOD: Duration = Duration::from_micros(WHEELED_STEP.0);
 /// The control loop has been silent for ten of its steps.
-const SILENT: Duration = Duration::from_millis(10);
+const CONTROL_SILENT_AFTER: Duration = Duration::from_millis(10);
 /// Period in which a radio that receives nothing reports that it listens.
-const LISTENS: Duration = Duration::from_millis(10);
+const RADIO_REPORT_PERIOD: Duration = Duration::from_millis(10);
 /// Number of checks by the watchdog's task within its time-out.
-const LOOKS_A_PATIENCE: u64 = 5;
+const CHECKS_PER_TIMEOUT: u64 = 5;
 
 #[cfg(test)]
 mod tests {
@@ -179,11 +180,11 @@ mod tests {
         fn measured(&mut self) -> [f32; WHEELS] {
             self.1
         }
-        fn drive(&mut self, rule_role: [f32; WHEELS], _dribbler: f32) {
-            for (speed, rule_role) in self.1.iter_mut().zip(rule_role) {
-                *speed += (6.0 * rule_role - *speed) / 30.0;
+        fn drive(&mut self, duty: [f32; WHEELS], _dribbler: f32) {
+            for (speed, duty) in self.1.iter_mut().zip(duty) {
+                *speed += (6.0 * duty - *speed) / 30.0;
             }
-            self.0.set(Some(rule_role));
+            self.0.set(Some(duty));
         }
         fn release(&mut self) {
             self.0.set(None);
@@ -209,7 +210,7 @@ mod tests {
 
     struct Counting(&'static Cell<u32>);
     impl Watchdog for Counting {
-        const PATIENCE: protocol::Duration = protocol::Duration::millis(100);
+        const TIMEOUT: protocol::Duration = protocol::Duration::millis(100);
         fn feed(&mut self) {
             self.0.set(self.0.get() + 1);
         }
@@ -232,22 +233,19 @@ mod tests {
     #[test]
     fn an_order_drives_and_kicks_and_its_absence_brakes_and_discharges() {
         let (boxes, wires) = (leaked(Mailboxes::new()), leaked(Wires::new()));
-        let (rule_role, acts) = (leaked(Cell::new(None)), leaked(RefCell::new(Vec::new())));
+        let (duty, acts) = (leaked(Cell::new(None)), leaked(RefCell::new(Vec::new())));
         let mut world = World::new();
-        world.spawn(control(Motor(rule_role, [0.0; WHEELS]), boxes, wires));
+        world.spawn(control(Motor(duty, [0.0; WHEELS]), boxes, wires));
         world.spawn(kicker(Coil(acts), wires));
         world.settle();
         world.advance(5_000);
-        assert_eq!(rule_role.get(), None, "no order yet, no current");
+        assert_eq!(duty.get(), None, "no order yet, no current");
         boxes.orders.signal(GO);
         world.advance(30_000);
-        assert!(rule_role.get().is_some_and(|rule_role| rule_role[0] > 0.1));
+        assert!(duty.get().is_some_and(|duty| duty[0] > 0.1));
         assert_eq!(acts.borrow().iter().filter(|act| matches!(act, KickerAct::Flat(_))).count(), 1);
         world.advance(300_000);
-        assert!(
-            rule_role.get().is_some_and(|rule_role| rule_role.iter().all(|rule_role| rule_role.abs() < 0.02)),
-            "{rule_role:?}"
-        );
+        assert!(duty.get().is_some_and(|duty| duty.iter().all(|duty| duty.abs() < 0.02)), "{duty:?}");
         assert_eq!(acts.borrow().last(), Some(&KickerAct::Bleed));
     }
 
@@ -261,9 +259,9 @@ mod tests {
             .rims
             .signal(Omni::default().rims(Twist { linear: geometry::Vector::new(1.0, 0.0), angular: 0.0 }));
         world.advance(10_000);
-        let Ok(Arrival::Sensors(snapshot)) = boxes.inbox.try_receive() else { panic!("nothing seen") };
-        assert!((snapshot.odometry.linear.x() - 1.0).abs() < 1e-3 && snapshot.ball_contact);
-        assert_eq!((snapshot.pose, snapshot.health.battery), (None, Some(15.0)));
+        let Ok(Arrival::Sensors(sensors)) = boxes.inbox.try_receive() else { panic!("nothing seen") };
+        assert!((sensors.odometry.linear.x() - 1.0).abs() < 1e-3 && sensors.ball_contact);
+        assert_eq!((sensors.pose, sensors.health.battery), (None, Some(15.0)));
         world.advance(60_000);
         assert_eq!(boxes.inbox.len(), 5);
     }
@@ -271,9 +269,9 @@ mod tests {
     #[test]
     fn the_watchdog_is_fed_only_while_control_radio_and_brain_all_run() {
         let (boxes, wires) = (leaked(Mailboxes::new()), leaked(Wires::new()));
-        let (fed, rule_role) = (leaked(Cell::new(0)), leaked(Cell::new(None)));
+        let (fed, duty) = (leaked(Cell::new(0)), leaked(Cell::new(None)));
         let mut world = World::new();
-        world.spawn(control(Motor(rule_role, [0.0; WHEELS]), boxes, wires));
+        world.spawn(control(Motor(duty, [0.0; WHEELS]), boxes, wires));
         world.spawn(radio_receive(Quiet, boxes));
         world.spawn(watchdog(Counting(fed), boxes));
         world.settle();

@@ -55,7 +55,7 @@ impl Interlock {
         if request == OmniKick::Discharge {
             return if readable && state.volts < EMPTY_VOLTS { KickerAct::Rest } else { KickerAct::Bleed };
         }
-        let rested = self.fired.is_none_or(|fired| now.since(fired) >= PAUSE);
+        let rested = self.fired.is_none_or(|fired| now.since(fired) >= KICK_PAUSE);
         let pulse = match request {
             OmniKick::Flat(speed) => pulse(speed, FLAT_PULSE).map(KickerAct::Flat),
             OmniKick::Chip(speed) => pulse(speed, CHIP_PULSE).map(KickerAct::Chip),
@@ -68,9 +68,9 @@ impl Interlock {
         if full { KickerAct::Rest } else { KickerAct::Charge }
     }
 
-    /// Whether a kick would be fired at once, judged by charge and pause.
+    /// Returns whether a kick would be fired at once, judged by charge and pause.
     pub fn is_ready(&self, now: Instant, volts: f32) -> bool {
-        volts >= FULL_VOLTS && self.fired.is_none_or(|fired| now.since(fired) >= PAUSE)
+        volts >= FULL_VOLTS && self.fired.is_none_or(|fired| now.since(fired) >= KICK_PAUSE)
     }
 }
 
@@ -103,10 +103,10 @@ const FLAT_PULSE: &[(f32, u64)] = SPEC.flat_pulses;
 const CHIP_PULSE: &[(f32, u64)] = SPEC.chip_pulses;
 /// The capacitor is full, V.
 pub const FULL_VOLTS: f32 = SPEC.full_volts;
-/// It is safe to touch below this, V.
+/// Voltage below which the capacitor is safe to touch, V.
 const EMPTY_VOLTS: f32 = SPEC.empty_volts;
-/// No second kick before this.
-const PAUSE: Duration = Duration::millis(SPEC.pause_ms);
+/// Least time between two kicks.
+const KICK_PAUSE: Duration = Duration::millis(SPEC.pause_ms);
 
 #[cfg(test)]
 mod tests {
@@ -129,7 +129,7 @@ mod tests {
         assert_eq!(interlock.step(now, kick, state(true, 210.0)), KickerAct::Flat(Duration(2_600)));
         assert!(!interlock.is_ready(now + Duration::millis(499), 210.0));
         assert_eq!(interlock.step(now + Duration::millis(499), kick, state(true, 210.0)), KickerAct::Rest);
-        let later = now + PAUSE;
+        let later = now + KICK_PAUSE;
         assert_eq!(
             interlock.step(later, OmniKick::Chip(3.0), state(true, 210.0)),
             KickerAct::Chip(Duration(2_900))

@@ -22,7 +22,7 @@ pub const OUTBOX_LEN: usize = 8;
 /// Something for the brain.
 #[allow(
     clippy::large_enum_variant,
-    reason = "a packet is hardly smaller than a picture, and there is no heap to box it on"
+    reason = "a packet is hardly smaller than a sensor frame, and there is no heap to box it on"
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Arrival {
@@ -73,7 +73,7 @@ impl Mailboxes {
         self.inbox.try_send(Arrival::Packet(packet)).is_ok()
     }
 
-    /// Whether the next arrival has to wait.
+    /// Returns whether the next arrival has to wait.
     pub fn is_full(&self) -> bool {
         self.inbox.is_full()
     }

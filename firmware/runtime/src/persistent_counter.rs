@@ -30,9 +30,9 @@ impl CounterCell {
         let [m0, m1, m2, m3, e0, e1, e2, e3, i0, i1, i2, i3, rest @ ..] = *bytes;
         let epoch = u32::from_le_bytes([e0, e1, e2, e3]);
         let inverted = u32::from_le_bytes([i0, i1, i2, i3]);
-        if bytes.iter().all(|byte| *byte == EMPTY) {
+        if bytes.iter().all(|byte| *byte == ERASED) {
             Self::Empty
-        } else if [m0, m1, m2, m3] == MAGIC && epoch == !inverted && rest.iter().all(|byte| *byte == EMPTY) {
+        } else if [m0, m1, m2, m3] == MAGIC && epoch == !inverted && rest.iter().all(|byte| *byte == ERASED) {
             Self::Epoch(epoch)
         } else {
             Self::Damaged
@@ -42,7 +42,7 @@ impl CounterCell {
 
 /// The bytes of a cell with this epoch.
 pub fn cell(epoch: u32) -> [u8; CELL_LEN] {
-    let mut bytes = [EMPTY; CELL_LEN];
+    let mut bytes = [ERASED; CELL_LEN];
     let content = MAGIC.into_iter().chain(epoch.to_le_bytes()).chain((!epoch).to_le_bytes());
     bytes.iter_mut().zip(content).for_each(|(to, from)| *to = from);
     bytes
@@ -57,14 +57,14 @@ pub struct CounterPlace {
     pub index: usize,
 }
 
-/// What a start has to do before it sends anything.
+/// Steps of a start before it sends anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WritePlan {
     /// Epoch of this start.
     pub epoch: u32,
     /// Cell to write it to.
     pub at: CounterPlace,
-    /// Whether that half must be erased first.
+    /// True if that half must be erased first.
     pub erase: bool,
 }
 
@@ -94,7 +94,7 @@ pub fn plan(cells: usize, mut read: impl FnMut(CounterPlace) -> CounterCell) -> 
 }
 
 /// Value of an erased byte.
-const EMPTY: u8 = 0xff;
+const ERASED: u8 = 0xff;
 
 #[cfg(test)]
 mod tests {
@@ -109,7 +109,7 @@ mod tests {
 
     impl Flash {
         fn new() -> Self {
-            Self(vec![[EMPTY; CELL_LEN]; 2 * CELLS])
+            Self(vec![[ERASED; CELL_LEN]; 2 * CELLS])
         }
 
         fn plan(&self) -> WritePlan {
@@ -123,13 +123,13 @@ mod tests {
                 if steps == 0 {
                     // Erasing was interrupted: some cells are erased, and some are undefined.
                     self.0[at.half * CELLS] = [0xf0; CELL_LEN];
-                    self.0[at.half * CELLS + 1] = [EMPTY; CELL_LEN];
+                    self.0[at.half * CELLS + 1] = [ERASED; CELL_LEN];
                     return None;
                 }
-                self.0[at.half * CELLS..][..CELLS].fill([EMPTY; CELL_LEN]);
+                self.0[at.half * CELLS..][..CELLS].fill([ERASED; CELL_LEN]);
             }
             let to = &mut self.0[at.half * CELLS + at.index];
-            assert_eq!(*to, [EMPTY; CELL_LEN], "a cell is written once");
+            assert_eq!(*to, [ERASED; CELL_LEN], "a cell is written once");
             let whole = cell(epoch);
             if steps < 2 {
                 to[..6].copy_from_slice(&whole[..6]);
@@ -166,7 +166,7 @@ mod tests {
     fn a_cell_is_what_was_written_and_nothing_else() {
         assert_eq!(CounterCell::of(&cell(7)), CounterCell::Epoch(7));
         assert_eq!(&cell(0x0102_0304)[..12], [0x31, 0x2d, 0x32, 0x42, 4, 3, 2, 1, 0xfb, 0xfc, 0xfd, 0xfe]);
-        assert_eq!(CounterCell::of(&[EMPTY; CELL_LEN]), CounterCell::Empty);
+        assert_eq!(CounterCell::of(&[ERASED; CELL_LEN]), CounterCell::Empty);
         for bit in 0..8 * CELL_LEN {
             let mut bytes = cell(7);
             bytes[bit / 8] ^= 1 << (bit % 8);

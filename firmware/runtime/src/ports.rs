@@ -4,7 +4,7 @@
 //! the task that waits for it; a board that has both on one chip shares the chip itself.
 #![allow(
     async_fn_in_trait,
-    reason = "all tasks of a robot run on one executor in one thread: nobody asks for Send"
+    reason = "all tasks of a robot run on one executor in one thread: Send is not needed"
 )]
 
 use protocol::Duration;
@@ -34,8 +34,8 @@ pub trait Senses {
 
 /// Actuators of a robot.
 pub trait BodyPort {
-    /// Executes the orders until the next call.
-    async fn act(&mut self, wanted: ActuatorFrame);
+    /// Executes `orders` until the next call.
+    async fn act(&mut self, orders: ActuatorFrame);
 }
 
 /// Four wheels with their motors, and the dribbler.
@@ -43,17 +43,17 @@ pub trait WheelsPort {
     /// Rim speeds since the last call, m/s; NaN where an encoder is known to be broken.
     fn measured(&mut self) -> [f32; WHEELS];
 
-    /// Applies these shares of the battery's voltage, −1 to 1, and the dribbler's share of its full speed,
-    /// until the next call.
-    fn drive(&mut self, rule_role: [f32; WHEELS], dribbler: f32);
+    /// Applies the wheels' duty cycles, −1 to 1 of the battery's voltage, and the dribbler's share of its full
+    /// speed, 0 to 1, until the next call.
+    fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32);
 
-    /// Takes the current off all of them.
+    /// Takes the current off wheels and dribbler.
     fn release(&mut self);
 }
 
 /// The kicker's capacitor and coils.
 pub trait Kicker {
-    /// Readings of its sensors.
+    /// Readings of the kicker's sensors.
     fn state(&mut self) -> KickerState;
 
     /// Executes `act`; returns when a pulse is over, or after a step of about a millisecond. Nothing may stay
@@ -78,15 +78,15 @@ pub struct Seen {
     pub tipped: bool,
     /// Battery voltage, V; `None` where it is not measured.
     pub battery: Option<f32>,
-    /// Whether the kicker is charged.
+    /// True if the kicker is charged.
     pub kicker_ready: bool,
 }
 
 /// A watchdog that resets the computer unless it is fed.
 pub trait Watchdog {
     /// Time without feeding after which it resets the chip.
-    const PATIENCE: Duration;
+    const TIMEOUT: Duration;
 
-    /// Feeds it: restarts its time-out.
+    /// Restarts the time-out of the watchdog.
     fn feed(&mut self);
 }

@@ -30,9 +30,9 @@ impl TaskProgress {
         self.0.store(self.0.load(Ordering::Relaxed) | part as u32, Ordering::Relaxed);
     }
 
-    /// Whether all parts have run since the last time this was true.
+    /// Returns whether all parts have run since the last time this was true.
     pub fn all(&self) -> bool {
-        let all = self.0.load(Ordering::Relaxed) == ALL;
+        let all = self.0.load(Ordering::Relaxed) == ALL_PARTS;
         if all {
             self.0.store(0, Ordering::Relaxed);
         }
@@ -40,7 +40,7 @@ impl TaskProgress {
     }
 }
 
-const ALL: u32 = RobotPart::Control as u32 | RobotPart::Radio as u32 | RobotPart::Brain as u32;
+const ALL_PARTS: u32 = RobotPart::Control as u32 | RobotPart::Radio as u32 | RobotPart::Brain as u32;
 
 #[cfg(test)]
 mod tests {

@@ -47,9 +47,9 @@ impl<C: Controller> Controller for Recorded<'_, C> {
     }
 
     fn poll_actuators(&mut self, now: Instant) -> Option<ActuatorFrame> {
-        let wanted = self.controller.poll_actuators(now)?;
-        self.journal.write(now, Entry::Ordered(wanted));
-        Some(wanted)
+        let orders = self.controller.poll_actuators(now)?;
+        self.journal.write(now, Entry::Ordered(orders));
+        Some(orders)
     }
 
     fn poll_timeout(&self) -> Option<Instant> {

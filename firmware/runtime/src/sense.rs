@@ -24,7 +24,7 @@ impl Encoder {
     /// Rim speed since the last step, m/s, from the counter and from the duty cycle of that time; NaN once
     /// the wheel was driven hard for a while without moving. Then the encoder, its cable or the motor is
     /// broken, and the governor brakes the robot.
-    pub fn step(&mut self, now: Instant, count: u16, rule_role: f32) -> f32 {
+    pub fn step(&mut self, now: Instant, count: u16, duty: f32) -> f32 {
         if let Some((at, before)) = self.last {
             let micros = now.since(at).0;
             if micros > 0 {
@@ -35,9 +35,9 @@ impl Encoder {
         } else {
             self.last = Some((now, count));
         }
-        let hard = rule_role.abs() >= HARD;
+        let hard = duty.abs() >= STALL_DUTY;
         self.stuck = match self.stuck {
-            Some((_, from)) if count.wrapping_sub(from).cast_signed().unsigned_abs() > SHAKES => None,
+            Some((_, from)) if count.wrapping_sub(from).cast_signed().unsigned_abs() > SHAKE_COUNTS => None,
             // Broken stays broken until the wheel moves: the duty cycle falls because the wheel is broken.
             Some((since, _)) if !hard && now.since(since) < STUCK_FOR => None,
             None if hard => Some((now, count)),
@@ -50,7 +50,7 @@ impl Encoder {
 
 /// A gyroscope's offset, determined while the robot stands after its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
+pub struct GyroOffset {
     zero: Option<f32>,
     sum: f32,
     seen: u16,
@@ -58,7 +58,7 @@ pub struct Turn {
     most: f32,
 }
 
-impl Turn {
+impl GyroOffset {
     /// Offset not known yet.
     pub const fn new() -> Self {
         Self { zero: None, sum: 0.0, seen: 0, least: f32::INFINITY, most: f32::NEG_INFINITY }
@@ -77,7 +77,7 @@ impl Turn {
         self.seen += 1;
         (self.least, self.most) = (self.least.min(rate), self.most.max(rate));
         let mean = self.sum / f32::from(self.seen);
-        if self.most - self.least > UNREST || mean.abs() > ZERO_MAX {
+        if self.most - self.least > STANDING_SPREAD_MAX || mean.abs() > ZERO_MAX {
             *self = Self::new();
         } else if self.seen >= STILL_SAMPLES {
             self.zero = Some(mean);
@@ -86,7 +86,7 @@ impl Turn {
     }
 }
 
-impl Default for Turn {
+impl Default for GyroOffset {
     fn default() -> Self {
         Self::new()
     }
@@ -96,25 +96,25 @@ impl Default for Turn {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Tilt {
     tipped: bool,
-    otherwise_since: Option<Instant>,
+    contrary_since: Option<Instant>,
 }
 
 impl Tilt {
     /// A detector that starts with the robot upright.
     pub const fn new() -> Self {
-        Self { tipped: false, otherwise_since: None }
+        Self { tipped: false, contrary_since: None }
     }
 
-    /// Whether the robot lies, from the upward part of the acceleration, g: 1 upright, 0 on its side. Short
-    /// shocks are ignored; NaN is no reading.
+    /// Returns whether the robot lies, from the upward part of the acceleration, g: 1 upright, 0 on its side.
+    /// Short shocks are ignored; NaN is no reading.
     pub fn step(&mut self, now: Instant, up: f32) -> bool {
-        let seems = if up.is_nan() { self.tipped } else { up < UPRIGHT };
+        let seems = if up.is_nan() { self.tipped } else { up < TIPPED_BELOW_G };
         if seems == self.tipped {
-            self.otherwise_since = None;
+            self.contrary_since = None;
         } else {
-            let since = *self.otherwise_since.get_or_insert(now);
-            if now.since(since) >= TILT_FOR {
-                (self.tipped, self.otherwise_since) = (seems, None);
+            let since = *self.contrary_since.get_or_insert(now);
+            if now.since(since) >= TILT_DEBOUNCE {
+                (self.tipped, self.contrary_since) = (seems, None);
             }
         }
         self.tipped
@@ -134,18 +134,18 @@ impl BreakBeam {
         Self { dark: None, broken: false }
     }
 
-    /// Whether the beam is interrupted, from the receiver's reading, 0 to 1, and whether the lamp is lit. A
-    /// receiver that is blinded, or reads NaN, detects no ball, because the kicker fires by it.
+    /// Returns whether the beam is interrupted, from the receiver's reading, 0 to 1, and whether the lamp is
+    /// lit. A receiver that is blinded, or reads NaN, detects no ball, because the kicker fires by it.
     pub fn step(&mut self, lit: bool, level: f32) -> bool {
         if !lit {
             self.dark = Some(level);
         } else if let Some(dark) = self.dark {
             let lamp = level - dark;
-            if !lamp.is_finite() || dark > BLIND {
+            if !lamp.is_finite() || dark > DAYLIGHT_MAX {
                 self.broken = false;
-            } else if lamp < LAMP_HIDDEN {
+            } else if lamp < LAMP_LIFT_WITH_BALL {
                 self.broken = true;
-            } else if lamp > LAMP_SEEN {
+            } else if lamp > LAMP_LIFT_FREE {
                 self.broken = false;
             }
         }
@@ -153,29 +153,30 @@ impl BreakBeam {
     }
 }
 
-/// A share of full voltage that moves any wheel that can be moved.
-const HARD: f32 = 0.8;
-/// A wheel that has not moved by then, at that duty cycle, is broken: the motor follows in 30 ms.
+/// Duty cycle from which any wheel moves that can be moved, share of full voltage.
+const STALL_DUTY: f32 = 0.8;
+/// Time at [`STALL_DUTY`] without motion after which a wheel is broken: a motor follows in 30 ms.
 const STUCK_FOR: Duration = Duration::millis(200);
-/// Counts by which a broken line, or a blocked wheel, may fluctuate.
-const SHAKES: u16 = 8;
+/// Encoder counts by which a broken line, or a blocked wheel, may fluctuate.
+const SHAKE_COUNTS: u16 = 8;
 const IMU: ImuSpec = RobotSpec::OURS.imu;
-/// Spread of a standing gyroscope's readings, rad/s.
-const UNREST: f32 = IMU.unrest;
-/// A larger offset is invalid, rad/s.
+/// Largest spread of a standing gyroscope's readings, rad/s.
+const STANDING_SPREAD_MAX: f32 = IMU.unrest;
+/// Largest valid offset of a gyroscope, rad/s.
 const ZERO_MAX: f32 = IMU.offset_max;
-/// Number of readings for an offset: half a second of a millisecond each.
+/// Number of readings that give an offset: half a second, one a millisecond.
 const STILL_SAMPLES: u16 = 500;
 /// Upward part of the acceleration below which the robot lies, g: 60° from upright.
-const UPRIGHT: f32 = 0.5;
-/// Duration after which a kick or a bump is over.
-const TILT_FOR: Duration = Duration::millis(300);
+const TIPPED_BELOW_G: f32 = 0.5;
+/// Time that a change of the tilt must last: kicks and bumps are shorter.
+const TILT_DEBOUNCE: Duration = Duration::millis(300);
 const BEAM: BreakBeamSpec = RobotSpec::OURS.break_beam;
-/// Share of the receiver's range by which the lamp lifts it, with a ball in the beam and without.
-const LAMP_HIDDEN: f32 = BEAM.hidden;
-const LAMP_SEEN: f32 = BEAM.seen;
-/// Daylight above which the lamp cannot be distinguished.
-const BLIND: f32 = BEAM.blind;
+/// Rise of the receiver's level by the lamp with a ball in the beam, at most, as a share of its range.
+const LAMP_LIFT_WITH_BALL: f32 = BEAM.hidden;
+/// The same of a free beam, at least.
+const LAMP_LIFT_FREE: f32 = BEAM.seen;
+/// Level of daylight above which the lamp does not show, share of the receiver's range.
+const DAYLIGHT_MAX: f32 = BEAM.blind;
 
 #[cfg(test)]
 mod tests {
@@ -200,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_that_is_driven_hard_and_does_not_move_is_reported_and_heals_when_it_moves() {
+    fn a_stalled_wheel_reads_nan_until_it_moves_again() {
         let mut encoder = Encoder::new(0.0001);
         // One channel is broken: the count fluctuates.
         for t in 0..200 {
@@ -216,27 +217,23 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_that_moves_is_never_reported() {
+    fn a_wheel_that_moves_always_reads_a_speed() {
         let mut encoder = Encoder::new(0.0001);
         for t in 0..5_000 {
-            let rule_role = if t % 700 < 350 { 1.0 } else { -1.0 };
-            assert!(
-                encoder.step(ms(t), (t % 700).min(700 - t % 700) as u16, rule_role).is_finite(),
-                "{t} ms"
-            );
+            let duty = if t % 700 < 350 { 1.0 } else { -1.0 };
+            assert!(encoder.step(ms(t), (t % 700).min(700 - t % 700) as u16, duty).is_finite(), "{t} ms");
         }
     }
 
     #[test]
-    fn a_zero_is_found_at_rest_and_taken_off() {
-        let mut turn = Turn::new();
-        let still = |n: u16| 0.01 + if n.is_multiple_of(2) { 0.005 } else { -0.005 };
+    fn a_gyroscopes_offset_is_found_at_rest_and_subtracted() {
+        let mut turn = GyroOffset::new();
         // Carried around first, then put down.
         for n in 0..300 {
             assert_eq!(turn.step(if n % 20 < 10 { 1.0 } else { 0.02 }), None);
         }
         for n in 0..600 {
-            if turn.step(still(n)).is_some() {
+            if turn.step(if n % 2 == 0 { 0.015 } else { 0.005 }).is_some() {
                 break;
             }
         }
@@ -246,13 +243,13 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_turns_steadily_while_it_starts_gets_no_zero() {
-        let mut turn = Turn::new();
+    fn a_robot_that_turns_steadily_while_it_starts_gets_no_offset() {
+        let mut turn = GyroOffset::new();
         assert!((0..5_000).all(|_| turn.step(0.5).is_none()));
     }
 
     #[test]
-    fn lying_is_reported_after_a_while_and_blows_are_not() {
+    fn a_robot_is_tipped_after_300_ms_on_its_side_and_not_after_a_blow() {
         let mut tilt = Tilt::new();
         assert!(!tilt.step(ms(0), 1.0));
         assert!(!tilt.step(ms(1), -8.0) && !tilt.step(ms(200), -1.0) && !tilt.step(ms(250), 1.0));
@@ -262,21 +259,21 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_is_distinguished_from_daylight_and_a_blinded_receiver_sees_none() {
-        let mut barrier = BreakBeam::new();
-        assert!(!barrier.step(true, 0.5), "nothing to compare with yet");
+    fn daylight_is_no_ball_and_a_blinded_receiver_sees_none() {
+        let mut beam = BreakBeam::new();
+        assert!(!beam.step(true, 0.5), "nothing to compare with yet");
         for daylight in [0.0, 0.3, 0.6] {
-            barrier.step(false, daylight);
-            assert!(!barrier.step(true, daylight + 0.3), "free at {daylight}");
-            barrier.step(false, daylight);
-            assert!(barrier.step(true, daylight + 0.02), "ball at {daylight}");
-            assert!(barrier.step(true, daylight + 0.12), "between the two it stays");
-            barrier.step(true, daylight + 0.3);
-            assert!(!barrier.step(true, daylight + 0.12), "between the two it stays");
+            beam.step(false, daylight);
+            assert!(!beam.step(true, daylight + 0.3), "free at {daylight}");
+            beam.step(false, daylight);
+            assert!(beam.step(true, daylight + 0.02), "ball at {daylight}");
+            assert!(beam.step(true, daylight + 0.12), "between the two it stays");
+            beam.step(true, daylight + 0.3);
+            assert!(!beam.step(true, daylight + 0.12), "between the two it stays");
         }
-        barrier.step(false, 0.95);
-        assert!(!barrier.step(true, 1.0));
-        barrier.step(false, 0.1);
-        assert!(!barrier.step(true, f32::NAN));
+        beam.step(false, 0.95);
+        assert!(!beam.step(true, 1.0));
+        beam.step(false, 0.1);
+        assert!(!beam.step(true, f32::NAN));
     }
 }

@@ -1,7 +1,5 @@
 //! `setup`: reading of a robot's configuration from the simulator, or from provisioning.
 
-use core::fmt;
-
 use brain::BrainConfig;
 use brain::body::BodyKind;
 use rules::League;
@@ -16,30 +14,19 @@ pub fn read(bytes: &[u8]) -> Result<BrainConfig, SetupError> {
     }
 }
 
-/// Why bytes are not a configuration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reason why bytes are not a configuration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SetupError {
-    /// They do not decode: cut short, or of another version of the firmware.
+    /// The bytes do not decode: cut short, or of another version of the firmware.
+    #[error("the bytes are no configuration of this firmware's version")]
     Unreadable,
     /// Number of surplus bytes behind it.
+    #[error("{0} bytes are left over behind the configuration")]
     Rest(usize),
     /// The firmware has no brain for the body of that league's robots.
+    #[error("this image leads no robot of the league {0:?}; take the other body's")]
     Body(League),
 }
-
-impl fmt::Display for SetupError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unreadable => f.write_str("the bytes are no configuration of this firmware's version"),
-            Self::Rest(n) => write!(f, "{n} bytes are left over behind the configuration"),
-            Self::Body(league) => {
-                write!(f, "this image leads no robot of the league {league:?}; take the other body's")
-            }
-        }
-    }
-}
-
-impl core::error::Error for SetupError {}
 
 #[cfg(test)]
 mod tests {
@@ -47,7 +34,7 @@ mod tests {
     use protocol::{RobotId, TeamId};
 
     #[test]
-    fn a_configuration_survives_the_way_and_any_cut_is_noticed() {
+    fn a_configuration_is_read_as_written_and_any_cut_is_refused() {
         let config = BrainConfig::new(RobotId::new(3).unwrap(), TeamId(1));
         let mut buffer = [0; 512];
         let bytes = postcard::to_slice(&config, &mut buffer).unwrap().len();

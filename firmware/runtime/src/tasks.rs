@@ -20,12 +20,12 @@ use crate::ports::{BodyPort, RadioReceiver, RadioSender, Senses};
 use crate::progress::RobotPart;
 use crate::recorded::Recorded;
 
-/// The robot's task: starts the boot epoch with its first poll.
+/// The brain's task: starts the boot epoch with its first poll.
 pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) -> ! {
     brain_with_keys(config, base, TeamKey::ZERO.of_robot(config.robot), boxes).await
 }
 
-/// As [`brain()`], with keys of its own.
+/// Runs as [`brain()`] does, with keys of its own.
 pub async fn brain_with_keys(
     config: &BrainConfig,
     base: CaseBase<'_>,
@@ -37,7 +37,7 @@ pub async fn brain_with_keys(
     think(&mut station, boxes).await
 }
 
-/// As [`brain_with_keys`], with everything it takes in and gives out in a journal.
+/// Runs as [`brain_with_keys`] does, with all inputs and outputs in a journal.
 pub async fn brain_with_journal(
     config: &BrainConfig,
     base: CaseBase<'_>,
@@ -71,17 +71,17 @@ pub async fn radio_send(mut radio: impl RadioSender, boxes: &Mailboxes) -> ! {
 /// Moves sensor frames into the inbox.
 pub async fn sensors(mut senses: impl Senses, boxes: &Mailboxes) -> ! {
     loop {
-        let snapshot = senses.sense().await;
+        let sensors = senses.sense().await;
         boxes.room_for_arrival().await;
-        boxes.deliver(Arrival::Sensors(snapshot));
+        boxes.deliver(Arrival::Sensors(sensors));
     }
 }
 
 /// Passes the brain's latest orders to the body.
 pub async fn body(mut body: impl BodyPort, boxes: &Mailboxes) -> ! {
     loop {
-        let wanted = boxes.orders.wait().await;
-        body.act(wanted).await;
+        let orders = boxes.orders.wait().await;
+        body.act(orders).await;
     }
 }
 
@@ -113,7 +113,7 @@ fn take(controller: &mut impl Controller, now: Instant, boxes: &Mailboxes) -> bo
     // An arrival is not passed by value: it is large, and every move would copy it.
     match &boxes.inbox.try_receive() {
         Ok(Arrival::Packet(packet)) => controller.handle_packet(now, packet),
-        Ok(Arrival::Sensors(snapshot)) => controller.handle_sensors(now, snapshot),
+        Ok(Arrival::Sensors(sensors)) => controller.handle_sensors(now, sensors),
         Err(TryReceiveError::Empty) => return false,
     }
     true
@@ -135,8 +135,8 @@ fn empty(controller: &mut impl Controller, now: Instant, boxes: &Mailboxes) {
     while let Some(packet) = controller.poll_packet(now) {
         boxes.post(packet);
     }
-    if let Some(wanted) = controller.poll_actuators(now) {
-        boxes.orders.signal(wanted);
+    if let Some(orders) = controller.poll_actuators(now) {
+        boxes.orders.signal(orders);
     }
 }
 

@@ -26,7 +26,7 @@ use crate::testing::{World, clock};
 fn deadlines_run_at_their_own_times_before_the_packet_that_came_later() {
     let diary = Diary::default();
     let mut robot = Robot::new(Clerk::new(&diary, &[7_000, 3_000, 40_000, 40_001]));
-    robot.tick(40_000, &[packet(&[9])], &snapshot(0.0));
+    robot.tick(40_000, &[packet(&[9])], &sensor_frame(0.0));
     let expected =
         ["3000 timeout", "7000 timeout", "40000 timeout", "40000 packet 9", "40000 sensors", "40001 timeout"];
     robot.world.advance(50_000);
@@ -37,9 +37,9 @@ fn deadlines_run_at_their_own_times_before_the_packet_that_came_later() {
 fn a_deadline_that_is_due_when_it_is_set_runs_as_soon_as_the_clock_moves() {
     let diary = Diary::default();
     let mut robot = Robot::new(Clerk::new(&diary, &[]));
-    robot.tick(10, &[packet(&[1, 0]), packet(&[2])], &snapshot(0.0));
+    robot.tick(10, &[packet(&[1, 0]), packet(&[2])], &sensor_frame(0.0));
     assert_eq!(*diary.borrow(), ["10 packet 1", "10 packet 2", "10 sensors"]);
-    robot.tick(20, &[packet(&[3])], &snapshot(0.0));
+    robot.tick(20, &[packet(&[3])], &sensor_frame(0.0));
     assert_eq!(diary.borrow()[3..], ["10 timeout", "20 packet 3", "20 sensors"]);
 }
 
@@ -69,7 +69,7 @@ fn the_tasks_drive_a_mind_as_a_plain_loop_does() {
         let packets: Vec<_> = (0..random.below(4))
             .map(|_| packet(&[random.below(200) as u8, random.below(60) as u8][..=random.below(2) as usize]))
             .collect();
-        let sight = snapshot(now as f32);
+        let sight = sensor_frame(now as f32);
         robot.tick(now, &packets, &sight);
         twin.tick(now, &packets, &sight);
     }
@@ -91,7 +91,7 @@ fn a_station_says_and_does_the_same_through_the_tasks() {
     let mut random = Random(3);
     for tick in 1..=500_u64 {
         let now = tick * 40_000;
-        let sight = snapshot(random.below(1_000) as f32 * 0.001);
+        let sight = sensor_frame(random.below(1_000) as f32 * 0.001);
         let reported = teammate.sent.len();
         teammate.tick(now, &[], &sight);
         let received: Vec<_> =
@@ -108,7 +108,7 @@ fn a_station_says_and_does_the_same_through_the_tasks() {
 }
 
 #[test]
-fn what_the_outbox_cannot_hold_is_dropped_and_counted() {
+fn packets_beyond_the_outbox_are_dropped_and_counted() {
     let diary = Diary::default();
     let boxes: &'static Mailboxes = Box::leak(Box::default());
     let mut clerk = Clerk::new(&diary, &[]);
@@ -118,7 +118,7 @@ fn what_the_outbox_cannot_hold_is_dropped_and_counted() {
     }
     let mut world = World::new();
     world.spawn(tasks::think(Box::leak(Box::new(clerk)), boxes));
-    boxes.inbox.try_send(Arrival::Sensors(snapshot(0.0))).unwrap();
+    boxes.inbox.try_send(Arrival::Sensors(sensor_frame(0.0))).unwrap();
     world.settle();
     assert_eq!(boxes.unsent(), 3);
     assert_eq!(boxes.outbox.try_receive().unwrap()[..], [0, 1], "what was said first is kept");
@@ -293,8 +293,8 @@ impl RadioSender for PacketLog {
     }
 }
 impl BodyPort for Actuators {
-    async fn act(&mut self, wanted: ActuatorFrame) {
-        self.0.borrow_mut().push(wanted);
+    async fn act(&mut self, orders: ActuatorFrame) {
+        self.0.borrow_mut().push(orders);
     }
 }
 
@@ -307,7 +307,7 @@ fn order(speed: f32) -> ActuatorFrame {
 }
 
 /// A robot and the ball somewhere left of the centre, moved by `x`.
-fn snapshot(x: f32) -> SensorFrame {
+fn sensor_frame(x: f32) -> SensorFrame {
     let ball = BallSight { position: Point::new(x - 1.0, 0.2), sigma: 0.01, age: Duration(0) };
     SensorFrame {
         pose: Some(Pose { position: Point::new(x, 0.1), heading: Angle::new(0.3) }),

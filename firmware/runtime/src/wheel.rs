@@ -20,9 +20,9 @@ pub enum Motors {
     Released,
 }
 
-/// Outputs of one step, after the loop's own check.
+/// Output of the control loop for the next millisecond: motors, dribbler and kick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EncoderStep {
+pub struct ControlOutput {
     /// Output of the wheels.
     pub motors: Motors,
     /// The dribbler's share of full speed, 0–1.
@@ -34,61 +34,60 @@ pub struct EncoderStep {
 /// The control loop of four wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {
-    order: Option<(Instant, ActuatorFrame)>,
+    orders: Option<(Instant, ActuatorFrame)>,
     /// Present target rim speeds, m/s; decrease without orders.
-    wanted: [f32; WHEELS],
+    target: [f32; WHEELS],
     integral: [f32; WHEELS],
 }
 
 impl Control {
     /// A controller without orders: the motors are without current.
     pub const fn new() -> Self {
-        Self { order: None, wanted: [0.0; WHEELS], integral: [0.0; WHEELS] }
+        Self { orders: None, target: [0.0; WHEELS], integral: [0.0; WHEELS] }
     }
 
     /// Takes the brain's new orders.
-    pub fn order(&mut self, now: Instant, order: ActuatorFrame) {
-        self.order = Some((now, order));
+    pub fn take_orders(&mut self, now: Instant, orders: ActuatorFrame) {
+        self.orders = Some((now, orders));
     }
 
     /// One step of a millisecond: the drive for the encoders' readings.
-    pub fn step(&mut self, now: Instant, measured: [f32; WHEELS]) -> EncoderStep {
-        let fresh = self.order.filter(|(at, _)| now.since(*at) < ORDER_STALE).map(|(_, order)| order);
-        let (dribbler, kick) = match (self.order, fresh) {
+    pub fn step(&mut self, now: Instant, measured: [f32; WHEELS]) -> ControlOutput {
+        let fresh = self.orders.filter(|(at, _)| now.since(*at) < ORDERS_AGE_MAX).map(|(_, orders)| orders);
+        let (dribbler, kick) = match (self.orders, fresh) {
             (None, _) | (_, Some(ActuatorFrame::Released | ActuatorFrame::Legged { .. })) => {
-                *self = Self { order: self.order, ..Self::new() };
-                return EncoderStep { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
+                *self = Self { orders: self.orders, ..Self::new() };
+                return ControlOutput { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
             }
             (Some(_), Some(ActuatorFrame::Omni { wheels, dribbler, kick }))
                 if is_finite(&wheels, dribbler) =>
             {
-                self.wanted = wheels;
+                self.target = wheels;
                 (dribbler, kick)
             }
             // The brain is silent, or has sent NaN: brakes to a stop as fast as wheels hold the field
             // surface.
             (Some(_), _) => {
-                let slower = |speed: f32| (speed.abs() - BRAKE_A_STEP).max(0.0) * speed.signum();
-                self.wanted = self.wanted.map(slower);
+                self.target = self.target.map(braked);
                 (0.0, OmniKick::Discharge)
             }
         };
-        let mut rule_role = [0.0; WHEELS];
-        for (((rule_role, wanted), measured), integral) in
-            rule_role.iter_mut().zip(&self.wanted).zip(&measured).zip(&mut self.integral)
+        let mut duty = [0.0; WHEELS];
+        for (((duty, target), measured), integral) in
+            duty.iter_mut().zip(&self.target).zip(&measured).zip(&mut self.integral)
         {
             // A broken sensor is ignored: the wheel runs open-loop, by the motor's own constant.
-            let error = if measured.is_finite() { wanted - measured } else { 0.0 };
-            let open = wanted * FEED_FORWARD + error * PROPORTIONAL;
-            let trial = *integral + error * INTEGRAL_A_STEP;
+            let error = if measured.is_finite() { target - measured } else { 0.0 };
+            let open = target * FEED_FORWARD + error * PROPORTIONAL;
+            let trial = *integral + error * INTEGRAL_PER_STEP;
             let free = open + trial;
-            *rule_role = free.clamp(-1.0, 1.0);
+            *duty = free.clamp(-1.0, 1.0);
             // At the voltage limit the integral does not grow (anti-windup).
-            if free == *rule_role || free.abs() < (open + *integral).abs() {
+            if free == *duty || free.abs() < (open + *integral).abs() {
                 *integral = trial;
             }
         }
-        EncoderStep { motors: Motors::Driven(rule_role), dribbler, kick }
+        ControlOutput { motors: Motors::Driven(duty), dribbler, kick }
     }
 }
 
@@ -98,24 +97,29 @@ impl Default for Control {
     }
 }
 
+/// The target speed one braking step later, m/s.
+fn braked(speed: f32) -> f32 {
+    (speed.abs() - BRAKE_PER_STEP).max(0.0) * speed.signum()
+}
+
 fn is_finite(wheels: &[f32; WHEELS], dribbler: f32) -> bool {
     wheels.iter().all(|speed| speed.is_finite()) && dribbler.is_finite()
 }
 
 /// An order older than this is invalid: five steps of the brain. The governor brakes for a silent host, this
 /// loop for a silent brain.
-pub const ORDER_STALE: Duration = Duration::millis(50);
+pub const ORDERS_AGE_MAX: Duration = Duration::millis(50);
 const SPEC: WheelSpec = RobotSpec::OURS.wheels;
-/// Steps in a second.
-const STEPS: f32 = (1_000_000 / CONTROL_PERIOD.0) as f32;
+/// Control steps in a second.
+const STEPS_PER_S: f32 = (1_000_000 / CONTROL_PERIOD.0) as f32;
 /// Speed by which a rim slows down in a step, m/s: as the governor brakes.
-const BRAKE_A_STEP: f32 = RobotSpec::OURS.governor.brake / STEPS;
+const BRAKE_PER_STEP: f32 = RobotSpec::OURS.governor.brake / STEPS_PER_S;
 /// Duty for a rim speed, s/m.
 const FEED_FORWARD: f32 = 1.0 / SPEC.free_speed;
 /// Duty for an error, s/m.
 const PROPORTIONAL: f32 = SPEC.proportional;
 /// Duty that an error of 1 m/s adds in a step.
-const INTEGRAL_A_STEP: f32 = SPEC.integral / STEPS;
+const INTEGRAL_PER_STEP: f32 = SPEC.integral / STEPS_PER_S;
 
 #[cfg(test)]
 mod tests {
@@ -123,8 +127,8 @@ mod tests {
 
     /// A motor that runs 5.4 m/s free (a weak battery), reaches two thirds of a change in 30 ms, and has a
     /// load that takes 8 % of its voltage.
-    fn motor(speed: f32, rule_role: f32) -> f32 {
-        speed + ((rule_role - 0.08) * 5.4 - speed) * (0.001 / 0.03)
+    fn motor(speed: f32, duty: f32) -> f32 {
+        speed + ((duty - 0.08) * 5.4 - speed) * (0.001 / 0.03)
     }
 
     fn omni(speed: f32) -> ActuatorFrame {
@@ -137,18 +141,18 @@ mod tests {
         ms: u64,
         order: Option<ActuatorFrame>,
         speeds: &mut [f32; WHEELS],
-    ) -> EncoderStep {
-        let mut last = EncoderStep { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::None };
+    ) -> ControlOutput {
+        let mut last = ControlOutput { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::None };
         for t in from..from + ms {
             let now = Instant(t * 1000);
             if let Some(order) = order.filter(|_| t % 10 == 0) {
-                control.order(now, order);
+                control.take_orders(now, order);
             }
             last = control.step(now, *speeds);
-            if let Motors::Driven(rule_role) = last.motors {
-                for (speed, rule_role) in speeds.iter_mut().zip(rule_role) {
-                    assert!((-1.0..=1.0).contains(&rule_role));
-                    *speed = motor(*speed, rule_role);
+            if let Motors::Driven(duty) = last.motors {
+                for (speed, duty) in speeds.iter_mut().zip(duty) {
+                    assert!((-1.0..=1.0).contains(&duty));
+                    *speed = motor(*speed, duty);
                 }
             }
         }
@@ -156,11 +160,11 @@ mod tests {
     }
 
     #[test]
-    fn wheels_reach_their_speeds_within_a_fifth_of_a_second_in_spite_of_load_and_a_weak_battery() {
+    fn wheels_reach_their_speeds_in_200_ms_under_load_and_on_a_weak_battery() {
         let (mut control, mut speeds) = (Control::new(), [0.0; WHEELS]);
         run(&mut control, 0, 200, Some(omni(2.0)), &mut speeds);
-        for (speed, wanted) in speeds.iter().zip([2.0, -2.0, 1.0, 0.0]) {
-            assert!((speed - wanted).abs() < 0.05, "{speeds:?}");
+        for (speed, target) in speeds.iter().zip([2.0, -2.0, 1.0, 0.0]) {
+            assert!((speed - target).abs() < 0.05, "{speeds:?}");
         }
         run(&mut control, 200, 400, Some(omni(-1.0)), &mut speeds);
         assert!((speeds[0] + 1.0).abs() < 0.02, "{speeds:?}");
@@ -184,25 +188,25 @@ mod tests {
     #[test]
     fn before_the_first_order_and_when_released_there_is_no_current() {
         let mut control = Control::new();
-        let released = EncoderStep { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
+        let released = ControlOutput { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
         assert_eq!(control.step(Instant(0), [0.0; WHEELS]), released);
-        control.order(Instant(1000), omni(1.0));
+        control.take_orders(Instant(1000), omni(1.0));
         assert_ne!(control.step(Instant(1000), [0.0; WHEELS]).motors, Motors::Released);
-        control.order(Instant(2000), ActuatorFrame::Released);
+        control.take_orders(Instant(2000), ActuatorFrame::Released);
         assert_eq!(control.step(Instant(2000), [0.0; WHEELS]), released);
     }
 
     #[test]
-    fn numbers_that_are_none_neither_drive_nor_stay() {
+    fn nan_in_orders_or_encoders_drives_nothing_and_leaves_nothing_behind() {
         let mut control = Control::new();
         let bad = ActuatorFrame::Omni { wheels: [f32::NAN; 4], dribbler: 0.0, kick: OmniKick::Flat(6.0) };
-        control.order(Instant(0), bad);
+        control.take_orders(Instant(0), bad);
         let step = control.step(Instant(0), [0.0; WHEELS]);
         assert_eq!((step.motors, step.kick), (Motors::Driven([0.0; WHEELS]), OmniKick::Discharge));
-        control.order(Instant(1000), omni(1.0));
-        let Motors::Driven(rule_role) = control.step(Instant(1000), [f32::NAN; WHEELS]).motors else {
+        control.take_orders(Instant(1000), omni(1.0));
+        let Motors::Driven(duty) = control.step(Instant(1000), [f32::NAN; WHEELS]).motors else {
             panic!("released")
         };
-        assert!(rule_role.iter().all(|rule_role| rule_role.is_finite()), "{rule_role:?}");
+        assert!(duty.iter().all(|duty| duty.is_finite()), "{duty:?}");
     }
 }

@@ -18,7 +18,7 @@ pub struct Analog {
     lamp: Output<'static>,
 }
 
-/// What a board decides of its inputs.
+/// Choices of a board about its analog inputs.
 #[derive(Clone, Copy)]
 #[allow(missing_debug_implementations, reason = "the chip's types have none")]
 pub struct AnalogSettings {

@@ -6,7 +6,7 @@ use embassy_stm32::timer::qei::Qei;
 use rules::{RobotSpec, WheelSpec};
 use runtime::wheel::WHEELS;
 
-/// The four counters.
+/// Counters of the four wheels' encoders.
 #[allow(missing_debug_implementations, reason = "the chip's drivers have none")]
 pub struct Encoders<A, B, C, D>
 where
@@ -32,7 +32,7 @@ where
     C: GeneralInstance4Channel,
     D: GeneralInstance4Channel,
 {
-    const RIM_A_COUNT: f32 = 2.0 * core::f32::consts::PI * SPEC.radius / SPEC.counts_a_turn;
+    const RIM_PER_COUNT: f32 = 2.0 * core::f32::consts::PI * SPEC.radius / SPEC.counts_a_turn;
 
     fn counts(&self) -> [u16; WHEELS] {
         [self.front_right.count(), self.back_right.count(), self.back_left.count(), self.front_left.count()]

@@ -47,9 +47,9 @@ impl<C: GeneralInstance2Channel, P: Charger> ports::Kicker for Kicker<C, P> {
             KickerAct::Flat(long) => self.pulse(Coil::Flat, long).await,
             KickerAct::Chip(long) => self.pulse(Coil::Chip, long).await,
         }
-        Timer::after(STEP).await;
+        Timer::after(KICKER_PERIOD).await;
     }
 }
 
 /// The kicker's step (`runtime::ports::Kicker`).
-const STEP: Duration = Duration::from_millis(1);
+const KICKER_PERIOD: Duration = Duration::from_millis(1);

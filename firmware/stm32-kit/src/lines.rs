@@ -16,7 +16,7 @@ use protocol::serial::LINE_LEN_MAX;
 use rules::{ImuModel, RadioLine, RobotSpec};
 use static_cell::StaticCell;
 
-/// Sends by DMA.
+/// Sending half of the line, by DMA.
 pub type Sender = UartSender<UartTx<'static, Async>>;
 /// Receives by DMA into a ring.
 pub type Receiver = UartReceiver<RingBufferedUartRx<'static>>;
@@ -25,7 +25,7 @@ pub type BoardImu = Imu<Spi<'static, Blocking, Master>, Output<'static>>;
 
 /// A radio chip nRF24L01+ alone on its blocking bus.
 pub type ChipBus = ExclusiveDevice<Spi<'static, Blocking, Master>, Output<'static>, Delay>;
-/// The chip's wires.
+/// Wires of the radio chip.
 pub type RadioChip = ChipWires<ChipBus, Output<'static>, Input<'static>, Delay>;
 /// A robot's receiver with such a chip.
 pub type RadioChipReceiver = ChipReceiver<ChipBus, Output<'static>, Input<'static>, Delay>;
@@ -85,7 +85,7 @@ pub fn chip(
 pub const CHIP_CLOCK: Hertz = Hertz(8_000_000);
 /// SPI clock; the sensor allows 24 MHz.
 pub const IMU_CLOCK: Hertz = Hertz(8_000_000);
-/// What these boards are wired for.
+/// Parts that these boards are wired for.
 const _: () = {
     assert!(
         matches!(RobotSpec::OURS.parts.imu, ImuModel::Icm42688P),

@@ -50,7 +50,7 @@ impl<T: GeneralInstance2Channel> Coils<T> {
             mode.set_ocm(1, PWM_MODE2.into());
         });
         for channel in 0..2 {
-            registers.ccr(channel).write(|compare| compare.set_ccr(NEVER));
+            registers.ccr(channel).write(|compare| compare.set_ccr(COMPARE_NEVER));
             registers.ccer().modify(|enable| enable.set_cce(channel, true));
         }
         // Applies the new prescaler.
@@ -58,7 +58,7 @@ impl<T: GeneralInstance2Channel> Coils<T> {
         Self { timer, _pins: pins }
     }
 
-    /// As [`Self::new`], on a timer whose outputs need their main enable.
+    /// Coils as of [`Self::new`], on a timer whose outputs need their main enable.
     pub fn with_main_output(timer: Peri<'static, T>, flat: Flex<'static>, chip: Flex<'static>) -> Self
     where
         T: AdvancedInstance2Channel,
@@ -77,8 +77,8 @@ impl<T: GeneralInstance2Channel> Coils<T> {
         }
         let micros = long.0.clamp(1, PULSE_MAX.0) as u16;
         let compare = match coil {
-            Coil::Flat => [1, NEVER],
-            Coil::Chip => [NEVER, 1],
+            Coil::Flat => [1, COMPARE_NEVER],
+            Coil::Chip => [COMPARE_NEVER, 1],
         };
         for (channel, compare) in compare.into_iter().enumerate() {
             registers.ccr(channel).write(|register| register.set_ccr(compare));
@@ -90,9 +90,9 @@ impl<T: GeneralInstance2Channel> Coils<T> {
     }
 }
 
-/// The charger, which runs on for [`CHARGE_RUNS_ON`] after each request.
+/// The charger, which runs on for [`CHARGE_HOLD_TIME`] after each request.
 pub trait Charger {
-    /// Runs for [`CHARGE_RUNS_ON`] from now.
+    /// Runs for [`CHARGE_HOLD_TIME`] from now.
     fn run(&mut self);
 
     /// Switches off at once.
@@ -118,7 +118,7 @@ impl<T: AdvancedInstance1Channel> MainOutputCharger<T> {
         });
         registers.ccmr_output(0).modify(|mode| mode.set_ocm(0, PWM_MODE2.into()));
         registers.ccr(0).write(|compare| compare.set_ccr(1));
-        registers.arr().write(|end| end.set_arr(CHARGE_RUNS_ON.0 as u16));
+        registers.arr().write(|end| end.set_arr(CHARGE_HOLD_TIME.0 as u16));
         registers.ccer().modify(|enable| enable.set_cce(0, true));
         timer.generate_update_event();
         registers.bdtr().modify(|outputs| outputs.set_moe(true));
@@ -148,7 +148,7 @@ impl<T: GeneralInstance2Channel> TwoChannelCharger<T> {
         let pulses = Coils::on(timer, [Some(pin), None]);
         let registers = pulses.timer.regs_2ch();
         registers.ccr(0).write(|compare| compare.set_ccr(1));
-        registers.arr().write(|end| end.set_arr(CHARGE_RUNS_ON.0 as u16));
+        registers.arr().write(|end| end.set_arr(CHARGE_HOLD_TIME.0 as u16));
         Self { pulses }
     }
 }
@@ -185,10 +185,10 @@ pub fn wire(pin: Peri<'static, impl Pin>, function: u8) -> Flex<'static> {
 
 /// No pulse is longer, for any request; the kicker's own table ends there.
 pub const PULSE_MAX: Duration = Duration::millis(6);
-/// How long the charger runs on without another request: three steps of the kicker.
-pub const CHARGE_RUNS_ON: Duration = Duration::millis(3);
+/// Time for which the charger runs on without another request: three steps of the kicker.
+pub const CHARGE_HOLD_TIME: Duration = Duration::millis(3);
 /// Output compare mode, low until the compare value, then high (OC1M; its type has another name on each
 /// family).
 const PWM_MODE2: u8 = 7;
 /// A count that no pulse reaches.
-const NEVER: u16 = u16::MAX;
+const COMPARE_NEVER: u16 = u16::MAX;

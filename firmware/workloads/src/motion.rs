@@ -15,58 +15,32 @@ use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
-/// Functions that are measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Work {
-    /// `t*` without drag: duration alone.
-    FreeTime,
-    /// The whole motion without drag.
-    FreePlan,
-    /// State of a motion without drag at one time.
-    FreeState,
-    /// `t*` with drag: duration alone.
-    DragTime,
-    /// The whole motion with drag.
-    DragPlan,
-    /// The earliest interception of a ball.
-    Soonest,
-    /// The interception with most slack.
-    Safest,
-    /// A planner step among 12 discs and 4 shapes that stand.
-    Avoid,
-    /// The same with moving discs.
-    AvoidMoving,
+geometry::labels! {
+    /// Functions that are measured.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Work {
+        /// `t*` without drag: duration alone.
+        FreeTime = "free-time",
+        /// The whole motion without drag.
+        FreePlan = "free-plan",
+        /// State of a motion without drag at one time.
+        FreeState = "free-state",
+        /// `t*` with drag: duration alone.
+        DragTime = "drag-time",
+        /// The whole motion with drag.
+        DragPlan = "drag-plan",
+        /// The earliest interception of a ball.
+        Soonest = "soonest",
+        /// The interception with most slack.
+        Safest = "safest",
+        /// A planner step among 12 discs and 4 shapes that stand.
+        Avoid = "avoid",
+        /// The same with moving discs.
+        AvoidMoving = "avoid-moving",
+    }
 }
 
 impl Work {
-    /// All tasks, in the order of the report.
-    pub const ALL: [Self; 9] = [
-        Self::FreeTime,
-        Self::FreePlan,
-        Self::FreeState,
-        Self::DragTime,
-        Self::DragPlan,
-        Self::Soonest,
-        Self::Safest,
-        Self::Avoid,
-        Self::AvoidMoving,
-    ];
-
-    /// Its name in reports and options.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::FreeTime => "free-time",
-            Self::FreePlan => "free-plan",
-            Self::FreeState => "free-state",
-            Self::DragTime => "drag-time",
-            Self::DragPlan => "drag-plan",
-            Self::Soonest => "soonest",
-            Self::Safest => "safest",
-            Self::Avoid => "avoid",
-            Self::AvoidMoving => "avoid-moving",
-        }
-    }
-
     /// Runs the task; returns the bits of the result, folded into 32 bits.
     pub fn run(self, task: &MotionTask) -> u32 {
         let MotionTask { from, velocity, to, .. } = *task;
@@ -77,8 +51,8 @@ impl Work {
             Self::FreeState => folded(&task.motion.at(task.time)),
             Self::DragTime => drag.time(from, velocity, to).to_bits(),
             Self::DragPlan => drag.plan(from, velocity, to).duration().to_bits(),
-            Self::Soonest => task.interception_point(InterceptRequest::Soonest),
-            Self::Safest => task.interception_point(InterceptRequest::Safest),
+            Self::Soonest => task.interception(InterceptRequest::Soonest),
+            Self::Safest => task.interception(InterceptRequest::Safest),
             Self::Avoid => task.step(&task.standing),
             Self::AvoidMoving => task.step(&task.moving),
         }
@@ -104,7 +78,7 @@ pub struct MotionTask {
 }
 
 impl MotionTask {
-    fn interception_point(&self, request: InterceptRequest) -> u32 {
+    fn interception(&self, request: InterceptRequest) -> u32 {
         let asked = Interception {
             robot: self.start,
             velocity: self.velocity,
@@ -114,8 +88,8 @@ impl MotionTask {
             until: 5.0,
         };
         match asked.find(&FreeLimits::default(), request) {
-            motion::intercept::InterceptVerdict::Intercepts(interception_point) => {
-                interception_point.robot_time.to_bits()
+            motion::intercept::InterceptVerdict::Intercepts(interception) => {
+                interception.robot_time.to_bits()
             }
             motion::intercept::InterceptVerdict::Chase { robot_time, .. } => robot_time.to_bits() ^ 1,
         }

@@ -20,71 +20,39 @@ use rules::{Phase, Side};
 /// Number of repetitions of each work.
 pub const ROUNDS: usize = 20;
 
-/// One operation of a robot's radio.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Work {
-    /// Seals the first message after a boot.
-    SealShort,
-    /// Seals the longest beacon.
-    SealLong,
-    /// Seals the robot's telemetry to the host.
-    SealTelemetry,
-    /// Opens the shortest command.
-    OpenCommand,
-    /// Opens the longest command.
-    OpenLongCommand,
-    /// Opens a teammate's short beacon.
-    OpenShort,
-    /// Opens a teammate's longest beacon.
-    OpenLong,
-    /// Opens a part of the world with one robot in it.
-    OpenSmallWorld,
-    /// Opens a full part of the world.
-    OpenWorld,
-    /// Skips a command to another robot.
-    Skip,
-    /// Refuses a frame that was received before.
-    RefuseReplay,
-    /// Refuses a forged frame of a teammate, as long as its longest.
-    RefuseForged,
+geometry::labels! {
+    /// One operation of a robot's radio.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Work {
+        /// Seals the first message after a boot.
+        SealShort = "seal a short beacon",
+        /// Seals the longest beacon.
+        SealLong = "seal the longest beacon",
+        /// Seals the robot's telemetry to the host.
+        SealTelemetry = "seal telemetry",
+        /// Opens the shortest command.
+        OpenCommand = "open a short command",
+        /// Opens the longest command.
+        OpenLongCommand = "open the longest command",
+        /// Opens a teammate's short beacon.
+        OpenShort = "open a short beacon",
+        /// Opens a teammate's longest beacon.
+        OpenLong = "open the longest beacon",
+        /// Opens a part of the world with one robot in it.
+        OpenSmallWorld = "open a world part with one robot",
+        /// Opens a full part of the world.
+        OpenWorld = "open a full world part",
+        /// Skips a command to another robot.
+        Skip = "skip a command to another robot",
+        /// Refuses a frame that was received before.
+        RefuseReplay = "refuse a replay",
+        /// Refuses a forged frame of a teammate, as long as its longest.
+        RefuseForged = "refuse a forged frame",
+    }
 }
 
 impl Work {
-    /// All works, in the order of the report.
-    pub const ALL: [Self; 12] = [
-        Self::SealShort,
-        Self::SealLong,
-        Self::SealTelemetry,
-        Self::OpenCommand,
-        Self::OpenLongCommand,
-        Self::OpenShort,
-        Self::OpenLong,
-        Self::OpenSmallWorld,
-        Self::OpenWorld,
-        Self::Skip,
-        Self::RefuseReplay,
-        Self::RefuseForged,
-    ];
-
-    /// Its name in tables.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::SealShort => "seal a short beacon",
-            Self::SealLong => "seal the longest beacon",
-            Self::SealTelemetry => "seal telemetry",
-            Self::OpenCommand => "open a short command",
-            Self::OpenLongCommand => "open the longest command",
-            Self::OpenShort => "open a short beacon",
-            Self::OpenLong => "open the longest beacon",
-            Self::OpenSmallWorld => "open a world part with one robot",
-            Self::OpenWorld => "open a full world part",
-            Self::Skip => "skip a command to another robot",
-            Self::RefuseReplay => "refuse a replay",
-            Self::RefuseForged => "refuse a forged frame",
-        }
-    }
-
-    /// Whether it opens or refuses a frame; else it seals one.
+    /// Returns whether the work opens or refuses a frame; else it seals one.
     pub const fn opens(self) -> bool {
         !matches!(self, Self::SealShort | Self::SealLong | Self::SealTelemetry)
     }
@@ -178,18 +146,18 @@ impl RadioTask<'_> {
     }
 }
 
-/// An arbitrary time.
+/// An arbitrary time, late enough for every lease.
 const NOW: Instant = Instant(12_345_678);
 
 fn id(number: u8) -> RobotId {
     RobotId::new(number).unwrap_or(RobotId::ZERO)
 }
 
-const FAR: WirePoint = WirePoint { x: -12_345, y: 23_456 };
+const FAR_POINT: WirePoint = WirePoint { x: -12_345, y: 23_456 };
 
 fn short() -> TeamMessage {
     TeamMessage::Beacon(Beacon {
-        pose: WirePose { at: FAR, heading: 1571 },
+        pose: WirePose { at: FAR_POINT, heading: 1571 },
         ball: None,
         status: Status::AVAILABLE,
         case_base: 0x1234_5678,
@@ -200,10 +168,11 @@ fn short() -> TeamMessage {
 }
 
 fn long() -> TeamMessage {
-    let play = Play { case: CaseId(300), ball: FAR, robots: [1, 3, 5, 7].map(id).into_iter().collect() };
+    let play =
+        Play { case: CaseId(300), ball: FAR_POINT, robots: [1, 3, 5, 7].map(id).into_iter().collect() };
     TeamMessage::Beacon(Beacon {
-        pose: WirePose { at: FAR, heading: 1571 },
-        ball: Some(BallReport { at: FAR, distance: 999, quality: BallQuality::default() }),
+        pose: WirePose { at: FAR_POINT, heading: 1571 },
+        ball: Some(BallReport { at: FAR_POINT, distance: 999, quality: BallQuality::default() }),
         status: Status::AVAILABLE,
         case_base: 0x1234_5678,
         cycle: Some(CycleState {
@@ -228,19 +197,19 @@ fn command(to: u8, directive: Directive) -> HostMessage {
 
 fn longest() -> Directive {
     let robots = [1, 3, 5, 7].map(id).into_iter().collect();
-    Directive::Gameplay { hint: Some(Hint { case: CaseId(u16::MAX), robots, pass_point: Some(FAR) }) }
+    Directive::Gameplay { hint: Some(Hint { case: CaseId(u16::MAX), robots, pass_point: Some(FAR_POINT) }) }
 }
 
 fn world(robots: usize) -> HostMessage {
-    let pose = WirePose { at: FAR, heading: -3 };
+    let pose = WirePose { at: FAR_POINT, heading: -3 };
     let robot = WireRobot { who: WireWho { side: Side::Theirs, id: id(4) }, pose, vx: 1234, vy: -1234 };
     HostMessage::World(WorldPart {
         snapshot: 7,
         part: 0,
         parts: 2,
         phase: Phase::FreeKick(Side::Ours),
-        placement: Some(FAR),
-        ball: Some(WireBall { at: FAR, height: 150, vx: 3000, vy: -3000 }),
+        placement: Some(FAR_POINT),
+        ball: Some(WireBall { at: FAR_POINT, height: 150, vx: 3000, vy: -3000 }),
         robots: core::iter::repeat_n(robot, robots).collect(),
     })
 }

@@ -64,7 +64,7 @@ pub(crate) fn all(directory: Option<&Path>) -> Result<Vec<LibraryHandle>, Librar
 /// Reads one league's directory; with a bar on a terminal's stderr where there are many files, and nothing in
 /// a pipe.
 pub(crate) fn load(directory: &Path) -> Result<Library, Vec<Finding>> {
-    with_bar(|on_progress| case_tools::load_telling(directory, on_progress))
+    with_bar(|on_progress| case_tools::load_with_progress(directory, on_progress))
 }
 
 /// Calls a reader that reports its progress, and draws it.

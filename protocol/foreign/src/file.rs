@@ -26,9 +26,8 @@ pub fn read_from(file: &File, limit: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
-        let description =
-            format!("the file is longer than {limit} bytes, the most that is read of such a file");
-        return Err(io::Error::new(ErrorKind::FileTooLarge, description));
+        let message = format!("the file is longer than {limit} bytes, the most that is read of such a file");
+        return Err(io::Error::new(ErrorKind::FileTooLarge, message));
     }
     Ok(bytes)
 }
@@ -45,8 +44,8 @@ fn regular(kind: FileType) -> io::Result<()> {
     if kind.is_file() {
         return Ok(());
     }
-    let description = format!("this is a {}, not a regular file; copy what it gives into a file", name(kind));
-    Err(io::Error::new(ErrorKind::InvalidInput, description))
+    let message = format!("this is a {}, not a regular file; copy what it gives into a file", name(kind));
+    Err(io::Error::new(ErrorKind::InvalidInput, message))
 }
 
 #[cfg(unix)]

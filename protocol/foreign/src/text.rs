@@ -43,7 +43,7 @@ fn push(out: &mut String, character: char) {
     }
 }
 
-/// Whether a terminal or a text view executes it instead of displaying it.
+/// Returns whether a terminal or a text view would execute the character instead of displaying it.
 fn is_obeyed(character: char) -> bool {
     character.is_control()
         || matches!(
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_terminal_obeys_is_escaped_and_the_rest_stays() {
+    fn control_characters_are_escaped_and_the_rest_stays() {
         for plain in ["", "TIGERs Mannheim", "größe ✓ 日本 🤖", "a\\b"] {
             assert!(matches!(printable(plain), Cow::Borrowed(same) if same == plain), "{plain}");
         }

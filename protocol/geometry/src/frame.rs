@@ -83,7 +83,7 @@ macro_rules! common {
             pub fn y(self) -> f32 {
                 self.0.y
             }
-            /// Whether neither coordinate is NaN or infinite.
+            /// Returns whether neither coordinate is NaN or infinite.
             pub fn is_finite(self) -> bool {
                 self.0.x.is_finite() && self.0.y.is_finite()
             }

@@ -3,33 +3,18 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A goal, by the end of the field it stands at. Cases, problems and robots name the goal they defend.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub enum GoalEnd {
-    /// At −x, the paper's "yellow": its defenders attack towards +x.
-    Negative,
-    /// At +x, the paper's "cyan": its defenders attack towards −x.
-    Positive,
+crate::labels! {
+    /// A goal, by the end of the field it stands at. Cases, problems and robots name the goal they defend.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+    pub enum GoalEnd {
+        /// At −x, the paper's "yellow": its defenders attack towards +x.
+        Negative = "yellow",
+        /// At +x, the paper's "cyan": its defenders attack towards −x.
+        Positive = "cyan",
+    }
 }
 
 impl GoalEnd {
-    /// The paper's name, as in files and problems.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Negative => "yellow",
-            Self::Positive => "cyan",
-        }
-    }
-
-    /// From the paper's name.
-    pub fn from_label(label: &str) -> Option<Self> {
-        match label {
-            "yellow" => Some(Self::Negative),
-            "cyan" => Some(Self::Positive),
-            _ => None,
-        }
-    }
-
     /// The sign of its x: −1 or +1.
     pub const fn sign(self) -> i32 {
         match self {
@@ -57,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_defends_yellow_attacks_cyan_towards_plus_x() {
+    fn defenders_of_yellow_attack_cyan_towards_plus_x() {
         let ours = GoalEnd::from_label("yellow").unwrap();
         assert_eq!((ours.sign(), ours.attack_sign()), (-1, 1));
         assert_eq!(ours.opposite().label(), "cyan");

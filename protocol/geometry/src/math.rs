@@ -91,30 +91,27 @@ pub fn round_to_i32(x: f32) -> i32 {
 /// Host and target must print the same number; [`GOLDEN_ROUNDS`] and [`GOLDEN_HASH`] fix it.
 pub fn golden_hash(rounds: u32) -> u64 {
     let mut state = 0x9E37_79B9_7F4A_7C15_u64;
-    let mut next = move |range: f32| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (((state >> 40) as i32) - (1 << 23)) as f32 * (range / 8_388_608.0)
-    };
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut add = |x: f32| {
-        for byte in x.to_bits().to_le_bytes() {
+    for _ in 0..rounds {
+        let (a, b) = (pseudo_random(&mut state, 50.0), pseudo_random(&mut state, 8.0));
+        let (s, c) = sin_cos(a);
+        let rotated = nalgebra::Matrix2::new(c, -s, s, c) * nalgebra::Vector2::new(a, b);
+        let powers = [sqrt(a * a), hypot(a, b), atan2(a, b), exp(b), ln(a * a + 1.0)];
+        let rounded = [floor(a), round_to_i32(a * 100.0) as f32];
+        let values = [s, c].into_iter().chain(powers).chain(rounded).chain([rotated.x, rotated.y]);
+        for byte in values.flat_map(|value| value.to_bits().to_le_bytes()) {
             hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         }
-    };
-    for _ in 0..rounds {
-        let (a, b) = (next(50.0), next(8.0));
-        let (s, c) = sin_cos(a);
-        for value in [s, c, sqrt(a * a), hypot(a, b), atan2(a, b), exp(b), ln(a * a + 1.0), floor(a)] {
-            add(value);
-        }
-        add(round_to_i32(a * 100.0) as f32);
-        let rotated = nalgebra::Matrix2::new(c, -s, s, c) * nalgebra::Vector2::new(a, b);
-        add(rotated.x);
-        add(rotated.y);
     }
     hash
+}
+
+/// The next number from −`range` to `range` of a fixed sequence: xorshift64.
+fn pseudo_random(state: &mut u64, range: f32) -> f32 {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (((*state >> 40) as i32) - (1 << 23)) as f32 * (range / 8_388_608.0)
 }
 
 /// Rounds of [`golden_hash`] that [`GOLDEN_HASH`] was taken with.

@@ -35,16 +35,13 @@ impl<F: Copy> Shape<F> {
             Self::Disc { center, radius } => center.distance(point) - radius,
             Self::Capsule { spine, radius } => spine.distance_to(point) - radius,
             Self::Box { low, high } => {
-                let over = |at: f32, least: f32, most: f32| {
-                    if least - at > at - most { least - at } else { at - most }
-                };
-                let (x, y) = (over(point.x(), low.x(), high.x()), over(point.y(), low.y(), high.y()));
+                let (x, y) = (beyond(point.x(), low.x(), high.x()), beyond(point.y(), low.y(), high.y()));
                 if x > 0.0 && y > 0.0 { Vector::<F>::new(x, y).norm() } else { math::max(x, y) }
             }
         }
     }
 
-    /// Whether `point` is in the region or on its border.
+    /// Returns whether `point` is in the region or on its border.
     pub fn contains(&self, point: Point<F>) -> bool {
         self.distance_to(point) <= 0.0
     }
@@ -60,6 +57,12 @@ impl<F: Copy> Shape<F> {
             },
         }
     }
+}
+
+/// Distance of a coordinate beyond the nearer of two limits; negative between them.
+#[inline]
+fn beyond(at: f32, low: f32, high: f32) -> f32 {
+    if low - at > at - high { low - at } else { at - high }
 }
 
 #[cfg(test)]

@@ -70,7 +70,8 @@ pub enum AreaForm {
 }
 
 /// An invalid dimension of a field.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{field}: {value} m is not within {least} to {most} m")]
 pub struct FieldFault {
     /// Name of the number's field in [`FieldSpec`].
     pub field: &'static str,
@@ -81,15 +82,6 @@ pub struct FieldFault {
     /// Largest valid value, m; some limits follow from other numbers of the same field.
     pub most: f32,
 }
-
-impl core::fmt::Display for FieldFault {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let Self { field, value, least, most } = self;
-        write!(f, "{field}: {value} m is not within {least} to {most} m")
-    }
-}
-
-impl core::error::Error for FieldFault {}
 
 /// Shortest and longest valid field, m: a table top, and twice division A's length.
 const LENGTH: [f32; 2] = [1.0, 24.0];
@@ -170,7 +162,7 @@ impl FieldSpec {
         Some(Shape::Box { low: Point::new(low, -y), high: Point::new(high, y) })
     }
 
-    /// Whether a robot with its centre at `p` counts for the team that defends `goal`.
+    /// Returns whether a robot with its centre at `p` counts for the team that defends `goal`.
     pub fn counts(&self, goal: GoalEnd, p: Point<Field>) -> bool {
         self.goal_substitution_area(goal).is_none_or(|area| !area.contains(p))
     }
@@ -179,17 +171,24 @@ impl FieldSpec {
     pub fn defence_area(&self, goal: GoalEnd) -> Vec<Shape<Field>, AREA_SHAPES_MAX> {
         let (line, sign) = (self.goal_line(goal), goal.sign() as f32);
         let front = line - sign * self.penalty_depth;
-        let between = |y: f32| Shape::Box {
-            low: Point::new(line.min(front), -y),
-            high: Point::new(line.max(front), y),
+        let radius = self.penalty_depth;
+        let half_width = match self.penalty_form {
+            AreaForm::Box => self.penalty_width * 0.5,
+            AreaForm::QuarterCircles => self.penalty_width * 0.5 - radius,
+        };
+        let middle = Shape::Box {
+            low: Point::new(line.min(front), -half_width),
+            high: Point::new(line.max(front), half_width),
         };
         match self.penalty_form {
-            AreaForm::Box => Vec::from_iter([between(self.penalty_width * 0.5)]),
+            AreaForm::Box => Vec::from_iter([middle]),
             AreaForm::QuarterCircles => {
-                let radius = self.penalty_depth;
-                let y = self.penalty_width * 0.5 - radius;
-                let round = |y: f32| Shape::Disc { center: Point::new(line, y), radius };
-                Vec::from_iter([between(y), round(-y), round(y)])
+                let [right, left] = [-half_width, half_width].map(|y| Point::new(line, y));
+                Vec::from_iter([
+                    middle,
+                    Shape::Disc { center: right, radius },
+                    Shape::Disc { center: left, radius },
+                ])
             }
         }
     }
@@ -199,7 +198,7 @@ impl FieldSpec {
         self.defence_area(goal).iter().map(|shape| shape.distance_to(p)).fold(f32::INFINITY, f32::min)
     }
 
-    /// Whether the point is in the penalty area at that end, lines included.
+    /// Returns whether the point is in the penalty area at that end, lines included.
     pub fn in_penalty_area(&self, goal: GoalEnd, p: Point<Field>) -> bool {
         let depth = self.length * 0.5 - p.x() * goal.sign() as f32;
         depth >= 0.0 && self.defence_area(goal).iter().any(|shape| shape.contains(p))
@@ -302,7 +301,7 @@ mod tests {
 
     #[test]
     fn every_leagues_field_passes_its_own_check() {
-        for league in [League::FourLegged, League::Ssl2013, League::DivisionB, League::DivisionA] {
+        for league in League::ALL {
             assert!(league.field().checked().is_ok(), "{}", league.name());
         }
     }

@@ -5,13 +5,15 @@ use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// A team by its colour; not to be confused with the goals that case files call "yellow" and "cyan".
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub enum Colour {
-    /// The team with yellow centre dots.
-    Yellow,
-    /// The team with blue centre dots.
-    Blue,
+geometry::labels! {
+    /// A team by its colour; not to be confused with the goals that case files call "yellow" and "cyan".
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+    pub enum Colour {
+        /// The team with yellow centre dots.
+        Yellow = "yellow",
+        /// The team with blue centre dots.
+        Blue = "blue",
+    }
 }
 
 impl Colour {
@@ -20,14 +22,6 @@ impl Colour {
         match self {
             Self::Yellow => Self::Blue,
             Self::Blue => Self::Yellow,
-        }
-    }
-
-    /// The colour's name in options and files.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Yellow => "yellow",
-            Self::Blue => "blue",
         }
     }
 }

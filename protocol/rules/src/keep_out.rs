@@ -26,31 +26,31 @@ pub struct Situation<'a> {
     pub own: GoalEnd,
     /// The phase of the game.
     pub phase: Phase<Side>,
-    /// Its role in the team.
+    /// Role of the robot under the rules.
     pub rule_role: RuleRole,
     /// Position of the ball; `None`: nothing around it is forbidden.
     pub ball: Option<Point<Field>>,
     /// Placement target of the ball; only used in ball placement.
     pub placement: Option<Point<Field>>,
-    /// Whether the ball has left its place since NORMAL_START; only used for a penalty's keeper, who then may
-    /// move.
+    /// True once the ball has left its place since NORMAL_START; only used for a penalty's keeper, who then
+    /// may move.
     pub ball_in_play: bool,
 }
 
-/// Why a place is forbidden.
+/// Reason why a place is forbidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeepOutReason {
     /// Within 0.5 m of the ball on STOP, or at the opponents' kick-off or free kick.
     BallDistance,
     /// On the ball before NORMAL_START.
     BallTouch,
-    /// In the own defence area, except for the keeper.
+    /// The place is in the own defence area, except for the keeper.
     OwnArea,
-    /// In the opponents' defence area, or within 0.2 m of it on STOP and at free kicks.
+    /// The place is in the opponents' defence area, or within 0.2 m of it on STOP and at free kicks.
     OpponentArea,
-    /// In the other half at a kick-off.
+    /// The place is in the other half at a kick-off.
     OtherHalf,
-    /// In the centre circle at a kick-off, except for the kicker.
+    /// The place is in the centre circle at a kick-off, except for the kicker.
     CentreCircle,
     /// Less than 1 m behind the ball at a penalty.
     BehindBall,
@@ -66,9 +66,9 @@ pub enum KeepOutReason {
 }
 
 impl KeepOutReason {
-    /// Whether being there is an offence or a failure by itself. Where it is not, robots keep out because
-    /// being there is useless: in the opponents' area the ball may not be touched, at the target teammates
-    /// are on the path.
+    /// Returns whether being there is an offence or a failure by itself. Where it is not, robots keep out
+    /// because being there is useless: in the opponents' area the ball may not be touched, at the target
+    /// teammates are on the path.
     pub const fn offends(self, phase: Phase<Side>) -> bool {
         match self {
             Self::Target | Self::Border => false,
@@ -170,20 +170,21 @@ pub const fn speed_limit<Who>(phase: &Phase<Who>) -> Option<f32> {
     }
 }
 
-/// Whether a robot may touch the ball.
+/// Permission of a robot to touch the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// It may touch the ball.
+    /// The robot may touch the ball.
     Allowed,
     /// The phase allows no robot, not its team, or only its team's kicker (or keeper).
     NotNow,
-    /// It is at least partly in the opponents' defence area.
+    /// The robot is at least partly in the opponents' defence area.
     InOpponentArea,
-    /// It is entirely in the own defence area and not the keeper: a penalty.
+    /// The robot is entirely in the own defence area and not the keeper: a penalty.
     InOwnArea,
 }
 
-/// Whether a robot with its centre here may touch the ball now. The caller keeps track of double touches.
+/// Permission of a robot with its centre here to touch the ball now. The caller keeps track of double
+/// touches.
 pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
     let may = match s.phase {
         Phase::Run => true,

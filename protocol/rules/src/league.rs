@@ -47,6 +47,12 @@ pub struct BallSpec {
 }
 
 impl League {
+    /// All leagues, in the order of their numbers on the wire.
+    pub const ALL: [Self; 4] = [Self::FourLegged, Self::Ssl2013, Self::DivisionB, Self::DivisionA];
+
+    /// The leagues whose robots run on wheels: those of the Small Size League.
+    pub const ON_WHEELS: [Self; 3] = [Self::Ssl2013, Self::DivisionB, Self::DivisionA];
+
     /// The name used in directories, files and options.
     pub const fn name(self) -> &'static str {
         match self {
@@ -139,9 +145,9 @@ impl League {
         }
     }
 
-    /// Its ball. Deceleration: middle of the 0.30–0.35 m/s² of SimRobot's 2-D model for such balls on the
-    /// field surface, rounded up; radius: the league's orange ball of about 85 mm across, from memory, no
-    /// source found.
+    /// The league's ball. Deceleration: middle of the 0.30–0.35 m/s² of SimRobot's 2-D model for such balls
+    /// on the field surface, rounded up; radius: the league's orange ball of about 85 mm across, from memory,
+    /// no source found.
     pub const fn ball(self) -> BallSpec {
         match self {
             Self::FourLegged => BallSpec { radius: 0.0425, rolling_deceleration: 0.35 },

@@ -17,7 +17,7 @@ use crate::{FieldSpec, Limits};
 pub enum BoundaryLine {
     /// A touch line: the one at +y, or the one at −y.
     Touch {
-        /// Whether it is the line at +y.
+        /// True for the line at +y.
         positive: bool,
     },
     /// A goal line beside the goal.
@@ -35,12 +35,18 @@ pub struct Crossing {
     pub at: Point<Field>,
 }
 
+/// Share of a path at which its coordinate crosses a line at ±`limit`; `None` where it does not end beyond it.
+fn share_to_line(start: f32, motion: f32, end: f32, limit: f32) -> Option<f32> {
+    let crossed = end.abs() > limit && motion != 0.0;
+    crossed.then(|| (((if end < 0.0 { -limit } else { limit }) - start) / motion).clamp(0.0, 1.0))
+}
+
 /// Distance of the ball's centre beyond a line's centre when the whole ball is over the whole line, m.
 fn beyond(field: &FieldSpec) -> f32 {
     BALL_RADIUS + field.line_width * 0.5
 }
 
-/// Whether all of the ball is over a line ("fully crossing the field line"; ball leaves the field).
+/// Returns whether all of the ball is over a line ("fully crossing the field line"; ball leaves the field).
 pub fn ball_is_out(field: &FieldSpec, ball: Point<Field>) -> bool {
     let over = beyond(field);
     ball.x().abs() > field.length * 0.5 + over || ball.y().abs() > field.width * 0.5 + over
@@ -58,14 +64,8 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
     let (x, y) = (field.length * 0.5, field.width * 0.5);
     let from = if field.contains(before) { before } else { field.clamp(now, 0.0) };
     let (dx, dy) = (now.x() - from.x(), now.y() - from.y());
-    // Share of the path at which the centre crosses a line's centre; only the lines that it goes beyond
-    // count.
-    let share = |start: f32, motion: f32, end: f32, limit: f32| {
-        let crossed = end.abs() > limit && motion != 0.0;
-        crossed.then(|| (((if end < 0.0 { -limit } else { limit }) - start) / motion).clamp(0.0, 1.0))
-    };
-    let over_goal_line = share(from.x(), dx, now.x(), x);
-    let over_touch_line = share(from.y(), dy, now.y(), y);
+    let over_goal_line = share_to_line(from.x(), dx, now.x(), x);
+    let over_touch_line = share_to_line(from.y(), dy, now.y(), y);
     let goal_first = match (over_goal_line, over_touch_line) {
         (Some(goal), Some(touch)) => goal <= touch,
         (goal, _) => goal.is_some(),
@@ -83,8 +83,8 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
     }
 }
 
-/// Whether all of the ball is in this goal: over the line, between the posts, under the upper edge of the
-/// walls.
+/// Returns whether all of the ball is in this goal: over the line, between the posts, under the upper edge of
+/// the walls.
 pub fn ball_in_goal(field: &FieldSpec, goal: GoalEnd, ball: Point<Field>, height: f32) -> bool {
     let depth = (ball.x() - field.goal_line(goal)) * goal.sign() as f32;
     depth > beyond(field)
@@ -93,20 +93,20 @@ pub fn ball_in_goal(field: &FieldSpec, goal: GoalEnd, ball: Point<Field>, height
         && height < field.goal_height
 }
 
-/// Why a ball in the goal is no goal (scoring goals).
+/// Reason why a ball in the goal is no goal (scoring goals).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoGoal {
     /// The scorers had more robots on the field than they may.
     TooManyRobots,
     /// The ball was higher than 0.15 m after their last touch.
     Height(f32),
-    /// They committed a foul that did not stop the game at most 2 s before.
+    /// The scorers committed a foul that did not stop the game at most 2 s before.
     Foul,
 }
 
-/// Whether a ball in the goal counts: `height` is the greatest since the scorers' last touch, m (the ball's
-/// lower side where it is known, else its centre), `since_foul` the time since their last foul that did not
-/// stop the game, s.
+/// Reason why a ball in the goal does not count, if any: `height` is the greatest since the scorers' last
+/// touch, m (the ball's lower side where it is known, else its centre), `since_foul` the time since their
+/// last foul that did not stop the game, s.
 pub fn no_goal(robots: u32, robots_allowed: u32, height: f32, since_foul: Option<f32>) -> Option<NoGoal> {
     if robots > robots_allowed {
         Some(NoGoal::TooManyRobots)
@@ -214,7 +214,7 @@ pub struct Crash {
     pub difference: f32,
 }
 
-/// Whether the collision of two robots of different teams, with these places and velocities, is a foul.
+/// Judges the collision of two robots of different teams with these places and velocities.
 pub fn crash(first: (Point<Field>, Vector<Field>), second: (Point<Field>, Vector<Field>)) -> Option<Crash> {
     let towards = (second.0 - first.0).unit()?;
     let speed = (first.1 - second.1).dot(towards).abs();

@@ -42,7 +42,7 @@ pub const PLACEMENT_TIME_MIN: f32 = 2.0;
 pub const PLACEMENT_FAILURES_MAX: u32 = 5;
 /// No placement is needed nearer than this to the target, m (same).
 pub const PLACEMENT_SKIP_DISTANCE: f32 = 1.0;
-/// … and farther than this from both defence areas, m (same).
+/// Least distance of the ball from both defence areas where no placement is needed, m (same).
 pub const PLACEMENT_SKIP_AREA_DISTANCE: f32 = 0.7;
 /// A ball slower than this is stationary, m/s. The rules give no number; trackers' noise on a stationary ball
 /// stays below it.
@@ -54,7 +54,7 @@ pub const GOAL_AFTER_FOUL: f32 = 2.0;
 /// A collision with a greater speed difference along the line between the robots is a foul, m/s (offenses,
 /// crashing).
 pub const CRASH_SPEED: f32 = 1.5;
-/// … both teams' foul where their speeds differ by less than this, m/s (same).
+/// Difference of speeds below which a collision is both teams' foul, m/s (same).
 pub const CRASH_DRAWN: f32 = 0.3;
 /// The same foul that does not stop the game counts again after this, s (non stopping fouls).
 pub const FOUL_REPEAT: f32 = 2.0;
@@ -66,15 +66,13 @@ pub const YELLOW_CARD_TIME: f32 = 120.0;
 pub const CARD_REMOVAL_TIME: f32 = 10.0;
 /// Yellow cards at a time; the next one is red (sanctions).
 pub const YELLOW_CARDS_MAX: u32 = 2;
-/// The game controller waits at most this long after HALT, s (referee commands, halt).
-pub const AFTER_HALT_TIME: f32 = 10.0;
 /// Playing time of a half and of the break, s (game structure).
 pub const HALF_TIME: f32 = 300.0;
 /// Playing time of a half of overtime, s (game structure).
 pub const OVERTIME_HALF_TIME: f32 = 150.0;
-/// Goals that end a game with a lead of two or more (game structure).
+/// Goals that end a game with a lead of [`GOALS_LEAD`] or more (game structure).
 pub const GOALS_MAX: u32 = 10;
-/// … and the lead required (game structure).
+/// Lead with which [`GOALS_MAX`] goals end a game (game structure).
 pub const GOALS_LEAD: u32 = 2;
 /// Time-outs of a team (game structure).
 pub const TIMEOUTS: u32 = 4;
@@ -82,25 +80,19 @@ pub const TIMEOUTS: u32 = 4;
 pub const TIMEOUT_TIME: f32 = 300.0;
 /// Substitutions a half that are free (substitution).
 pub const SUBSTITUTIONS: u32 = 5;
-/// Time for a substitution, s (substitution).
-pub const SUBSTITUTION_TIME: f32 = 20.0;
-/// The centre substitution area reaches this far from the halfway line, in the margin, m (substitution).
+/// Reach of the centre substitution area from the halfway line, in the margin, m (substitution).
 pub const SUBSTITUTION_REACH: f32 = 1.0;
 /// Least distance from the ball of a robot that is substituted, m (substitution).
 pub const SUBSTITUTION_BALL_DISTANCE: f32 = 0.5;
-/// Division A's goal substitution area starts this far behind the own goal line, m (substitution).
-pub const GOAL_SUBSTITUTION_DISTANCE: f32 = 0.3;
 /// The radius that the rules assume for every robot, m (playing environment).
 pub const ROBOT_RADIUS: f32 = 0.09;
 /// The greatest height of a robot, m (robots).
 pub const ROBOT_HEIGHT: f32 = 0.15;
 /// The ball's radius, m: a golf ball of 43 mm (playing environment).
 pub const BALL_RADIUS: f32 = 0.0215;
-/// The ball's mass, kg (playing environment).
-pub const BALL_MASS: f32 = 0.046;
-/// A robot covers at most this share of the ball, seen from above (robots).
+/// Largest share of the ball that a robot covers, seen from above (robots).
 pub const BALL_COVERED: f32 = 0.2;
-/// Teams have this long to take their places for a kick-off or penalty, s (the game controller's setting).
+/// Time that teams have to take their places for a kick-off or penalty, s (the game controller's setting).
 pub const PREPARE_TIME: f32 = 10.0;
 /// Number of valid robot numbers: 0 to 15 (robots).
 pub const ROBOT_IDS: u32 = 16;
@@ -123,15 +115,15 @@ pub struct Limits {
     pub keeper_hold: f32,
     /// Play without progress for this time is stopped, s (offenses, no progress).
     pub no_progress: f32,
-    /// Whether a kick from the own half over their goal line is "aimless" (ball leaves the field).
+    /// True where a kick from the own half over their goal line is "aimless" (ball leaves the field).
     pub aimless_kick: bool,
-    /// Whether teams must place the ball; else they may decline (referee commands, ball placement).
-    pub placement_rule_role: bool,
-    /// A free kick is taken this far or farther from every line, m (referee commands, free kick).
+    /// True where teams must place the ball; else they may decline (referee commands, ball placement).
+    pub placement_is_mandatory: bool,
+    /// Least distance of a free kick from every line, m (referee commands, free kick).
     pub spot_line_distance: f32,
-    /// … and this far from both defence areas, m (same).
+    /// Least distance of a free kick from both defence areas, m (referee commands, free kick).
     pub spot_area_distance: f32,
-    /// A goal kick is taken this far from the goal line, m (ball leaves the field).
+    /// Distance of a goal kick from the goal line, m (ball leaves the field).
     pub goal_kick_distance: f32,
 }
 
@@ -144,7 +136,7 @@ const DIVISION_B: Limits = Limits {
     keeper_hold: 10.0,
     no_progress: 10.0,
     aimless_kick: true,
-    placement_rule_role: false,
+    placement_is_mandatory: false,
     spot_line_distance: 0.2,
     spot_area_distance: 1.0,
     goal_kick_distance: 1.0,
@@ -176,7 +168,7 @@ impl League {
                 keeper_hold: 5.0,
                 no_progress: 5.0,
                 aimless_kick: false,
-                placement_rule_role: true,
+                placement_is_mandatory: true,
                 ..DIVISION_B
             }),
         }

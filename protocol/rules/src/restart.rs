@@ -20,7 +20,7 @@ const SPOT_STEP: f32 = 0.01;
 /// Number of halvings of the last step: 10 mm / 2¹⁰ is a hundredth of a millimetre.
 const SPOT_HALVINGS: usize = 10;
 
-/// Why a spot is invalid for a free kick.
+/// Reason why a spot is invalid for a free kick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpotFault {
     /// Too near to a touch line or goal line, or beyond it.
@@ -37,7 +37,7 @@ pub enum SpotFault {
     },
 }
 
-/// Why a free kick may not be taken here; `None` if it may.
+/// Reason why a free kick may not be taken here; `None` if it may.
 pub fn free_kick_fault(field: &FieldSpec, limits: &Limits, spot: Point<Field>) -> Option<SpotFault> {
     let inside = (field.length * 0.5 - spot.x().abs()).min(field.width * 0.5 - spot.y().abs());
     if inside < limits.spot_line_distance - SPOT_TOLERANCE {
@@ -155,15 +155,14 @@ pub enum OutKind {
     AimlessKick,
 }
 
-/// Where play continues after the ball crossed a line; `own` is the goal of the team that touched it last,
-/// `kicked_from` the place of that touch, `from_kickoff` whether it was the kick-off itself.
+/// Restart after the ball crossed a line; `own` is the goal of the team that touched it last, `kicked_from`
+/// the place of that touch, none for the kick-off itself.
 pub fn after_out(
     field: &FieldSpec,
     limits: &Limits,
     crossing: Crossing,
     own: GoalEnd,
     kicked_from: Option<Point<Field>>,
-    from_kickoff: bool,
 ) -> AfterOut {
     let (x, y) = (field.length * 0.5 - FROM_LINE, field.width * 0.5 - FROM_LINE);
     let touch_line = |at: f32| if at < 0.0 { -y } else { y };
@@ -180,7 +179,7 @@ pub fn after_out(
             let aimless = kicked_from.filter(|from| {
                 // The place of the last touch decides: from the own half it has crossed the halfway line
                 // since.
-                limits.aimless_kick && !from_kickoff && from.x() * own.sign() as f32 > 0.0
+                limits.aimless_kick && from.x() * own.sign() as f32 > 0.0
             });
             if let Some(from) = aimless {
                 let spot = nearest_free_kick_spot(field, limits, from);
@@ -222,7 +221,7 @@ pub enum PlacementLack {
     Robot(f32),
 }
 
-/// Whether the ball is placed; time (at least 2 s, at most 30 s) is the caller's.
+/// Reason why the ball is not placed yet; time (at least 2 s, at most 30 s) is the caller's.
 pub fn placement_lack(
     ball: Point<Field>,
     speed: f32,
@@ -241,7 +240,7 @@ pub fn placement_lack(
     nearest.filter(|near| *near < next.clearance()).map(PlacementLack::Robot)
 }
 
-/// Whether the ball lies well enough that no placement is needed.
+/// Returns whether the ball lies well enough that no placement is needed.
 pub fn placement_needless(field: &FieldSpec, ball: Point<Field>, speed: f32, target: Point<Field>) -> bool {
     let areas = [GoalEnd::Negative, GoalEnd::Positive].map(|goal| field.distance_to_area(goal, ball));
     ball.distance(target) < PLACEMENT_SKIP_DISTANCE

@@ -13,15 +13,15 @@ use crate::limits::BALL_RADIUS;
 /// A robot on wheels, and what is assumed of others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotSpec {
-    /// Its name.
+    /// Name of the robot, as in its description.
     pub name: &'static str,
-    /// Its shape, seen from above.
+    /// Outline of the robot, seen from above.
     pub hull: HullSpec,
-    /// What a motion is planned with: below what the wheels hold, so that a plan can be kept.
+    /// Limits by which a motion is planned: below what the wheels hold, so that a plan can be kept.
     pub plan: DriveSpec,
     /// The same with the ball at the dribbler.
     pub plan_holding: DriveSpec,
-    /// What a turn is planned with.
+    /// Limits by which a turn is planned.
     pub turn: TurnSpec,
     /// The same with the ball at the dribbler.
     pub turn_holding: TurnSpec,
@@ -29,23 +29,23 @@ pub struct RobotSpec {
     pub turn_placing: TurnSpec,
     /// The last limits before the motors.
     pub governor: GovernorSpec,
-    /// What is assumed of robots whose plans are not known: opponents, and ours as the host sees them.
+    /// Limits assumed of robots whose plans are not known: opponents, and ours as the host sees them.
     pub assumed: AssumedSpec,
-    /// Its kicker and the kicker's charge.
+    /// Kicker and the kicker's charge.
     pub kicker: KickerSpec,
-    /// Its dribbler, by the roller's speed.
+    /// Dribbler, by the roller's speed.
     pub dribbler: DribblerSpec,
-    /// Its wheels and their speed control.
+    /// Wheels and their speed control.
     pub wheels: WheelSpec,
-    /// Its battery.
+    /// Battery and its voltages.
     pub battery: BatterySpec,
     /// The light barrier at the dribbler.
     pub break_beam: BreakBeamSpec,
-    /// Its gyroscope.
+    /// Gyroscope and accelerometer, with their limits.
     pub imu: ImuSpec,
-    /// What its board must be wired for.
+    /// Parts that the board must be wired for.
     pub parts: PartsSpec,
-    /// What it can do.
+    /// Abilities of the hardware, for the simulator.
     pub hardware: HardwareSpec,
 }
 
@@ -56,7 +56,8 @@ pub struct HullSpec {
     pub radius: f32,
     /// From the centre to the flat front, m.
     pub front: f32,
-    /// How far the dribbler's opening lets the ball into the disc of `radius`, m; for times of interception.
+    /// Depth by which the dribbler's opening lets the ball into the disc of `radius`, m; for times of
+    /// interception.
     pub opening: f32,
 }
 
@@ -87,7 +88,7 @@ pub struct TurnSpec {
     pub acceleration: f32,
 }
 
-/// What the governor lets through.
+/// Limits that the governor lets through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GovernorSpec {
     /// Greatest speed of the centre, m/s.
@@ -100,7 +101,7 @@ pub struct GovernorSpec {
     pub brake_turn: f32,
 }
 
-/// What is assumed of robots whose plans are not known.
+/// Limits assumed of robots whose plans are not known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AssumedSpec {
     /// Passes, interceptions and coercion: any robot of the league, ours too.
@@ -143,7 +144,7 @@ pub struct KickerSpec {
     pub chip_slope: f32,
     /// The capacitor counts as full from this voltage on, V.
     pub full_volts: f32,
-    /// It is safe to touch below this, V.
+    /// Voltage below which the capacitor is safe to touch, V.
     pub empty_volts: f32,
     /// From one kick to the next, ms.
     pub pause_ms: u64,
@@ -169,8 +170,8 @@ pub struct DribblerSpec {
 /// Four wheels and their speed control.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelSpec {
-    /// Where they stand, degrees counter-clockwise from the front: front right, back right, back left, front
-    /// left.
+    /// Positions of the wheels, degrees counter-clockwise from the front: front right, back right, back left,
+    /// front left.
     pub degrees: [f32; 4],
     /// From the robot's centre to a wheel, m.
     pub distance: f32,
@@ -189,7 +190,7 @@ pub struct WheelSpec {
     pub integral: f32,
 }
 
-/// A battery's voltages.
+/// Voltages of the battery by which it is judged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BatterySpec {
     /// The robot stops to play below it, V.
@@ -221,17 +222,17 @@ pub struct ImuSpec {
 /// Parts that a board is wired for, or is not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartsSpec {
-    /// How its motors are driven.
+    /// Scheme by which the motors are driven.
     pub motors: MotorScheme,
-    /// Its gyroscope.
+    /// Model of the gyroscope.
     pub imu: ImuModel,
-    /// Its radio.
+    /// Line to the radio.
     pub radio: RadioLine,
     /// Rate of the serial line to the radio, 1/s.
     pub baud: u32,
 }
 
-/// How motors are driven (docs/boards.md).
+/// Schemes by which motors are driven (docs/boards.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorScheme {
     /// A PWM and a direction for each.
@@ -245,9 +246,9 @@ pub enum MotorScheme {
 /// Gyroscopes with a driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImuModel {
-    /// ICM-42688-P.
+    /// ICM-42688-P of TDK, on SPI.
     Icm42688P,
-    /// None: the robot relies on vision.
+    /// No gyroscope: the robot relies on vision.
     None,
 }
 
@@ -256,11 +257,11 @@ pub enum ImuModel {
 pub enum RadioLine {
     /// A modem on a serial line.
     Serial,
-    /// A chip nRF24L01+.
+    /// Radio chip nRF24L01+ on SPI.
     Nrf24,
 }
 
-/// What the robot can do, measured, and what only the simulator asks for; plans stay below it.
+/// Measured abilities of the robot, and those that only the simulator asks for; plans stay below them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HardwareSpec {
     /// Height of the hull, m.
@@ -273,7 +274,7 @@ pub struct HardwareSpec {
     pub speed: f32,
     /// Greatest turning rate, rad/s.
     pub turn_speed: f32,
-    /// What the wheels hold, speeding up ahead, m/s².
+    /// Acceleration that the wheels hold, speeding up ahead, m/s².
     pub forward: f32,
     /// The same to the side, m/s².
     pub side: f32,
@@ -281,7 +282,7 @@ pub struct HardwareSpec {
     pub brake: f32,
     /// Speeding up a turn, rad/s².
     pub turn: f32,
-    /// Of a free wheel from standing, m/s².
+    /// Acceleration of a free wheel from standing, m/s².
     pub rim_acceleration: f32,
     /// Strongest flat kick, m/s.
     pub flat: f32,
@@ -289,7 +290,7 @@ pub struct HardwareSpec {
     pub chip: f32,
     /// From kick to kick, s.
     pub recharge: f32,
-    /// What the roller pulls a ball with at full speed, m/s².
+    /// Acceleration with which the roller pulls a ball at full speed, m/s².
     pub pull: f32,
 }
 
@@ -302,7 +303,7 @@ impl RobotSpec {
     pub const REFERENCE: Self = described::REFERENCE;
     /// The text of the description that this build is for; its numbers are [`Self::OURS`].
     pub const TEXT: &str = described::TEXT;
-    /// Where that text came from: a built-in name, or a path from the workspace's root.
+    /// Source of that text: a built-in name, or a path from the workspace's root.
     pub const SOURCE: &str = described::SOURCE;
 }
 
@@ -339,7 +340,7 @@ mod tests {
 
     #[test]
     fn no_league_sees_a_kick_faster_than_its_rules_and_pulses_grow_with_the_speed() {
-        for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
+        for league in League::ON_WHEELS {
             let limit = league.limits().map_or(0.0, |limits| limits.ball_speed);
             let fastest = OURS.kicker.fastest_in(league);
             assert!(

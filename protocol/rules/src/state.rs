@@ -119,7 +119,7 @@ impl Stage {
         Self::PostGame,
     ];
 
-    /// Whether the clock of the match can run in this stage.
+    /// Returns whether the clock of the match can run in this stage.
     pub const fn is_played(self) -> bool {
         matches!(
             self,
@@ -131,7 +131,7 @@ impl Stage {
         )
     }
 
-    /// Whether teams pause and team members may enter the field.
+    /// Returns whether teams pause and team members may enter the field.
     pub const fn is_break(self) -> bool {
         matches!(
             self,
@@ -147,16 +147,16 @@ impl Stage {
 /// Effect of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CommandVerdict {
-    /// It follows from the phase before.
+    /// The command follows from the phase before.
     Followed,
     /// The command that holds already.
     Repeated,
-    /// It does not follow from this phase, but is accepted.
+    /// The command does not follow from this phase, but is accepted.
     OffGraph {
         /// The phase before the command.
         from: Phase<Colour>,
     },
-    /// It does not follow from this phase, and is read as STOP first.
+    /// The command does not follow from this phase, and is read as STOP first.
     AsStop {
         /// The phase before the command.
         from: Phase<Colour>,
@@ -185,9 +185,9 @@ pub enum Ticked {
 pub struct GameState {
     phase: Phase<Colour>,
     command: Option<RefereeCommand>,
-    /// When the phase started, µs.
+    /// Start of the phase, µs.
     since: u64,
-    /// Where the ball lay when the restart started.
+    /// Position of the ball when the restart started.
     ball_at: Option<Point<Field>>,
     penalty_in_play: bool,
     later: Option<(Phase<Colour>, u64)>,
@@ -202,7 +202,7 @@ impl Default for GameState {
 }
 
 impl GameState {
-    /// Nothing received yet: no robot moves.
+    /// A state without any command received: no robot moves.
     pub const fn new() -> Self {
         let phase = Phase::Halt;
         let (ball_at, later) = (None, None);
@@ -219,13 +219,13 @@ impl GameState {
         self.command
     }
 
-    /// When this phase started or its clock was restarted, µs.
+    /// Time at which this phase started or its clock was restarted, µs.
     pub const fn since(&self) -> u64 {
         self.since
     }
 
-    /// Whether a penalty's ball has left its place, which frees the keeper; in every other phase whether the
-    /// ball is in play.
+    /// Returns whether a penalty's ball has left its place, which frees the keeper; in every other phase
+    /// whether the ball is in play.
     pub const fn ball_in_play(&self) -> bool {
         match self.phase {
             Phase::Run => true,
@@ -323,7 +323,7 @@ impl GameState {
     }
 }
 
-/// Whether the league's graph has this edge (commands only; time and ball make the others).
+/// Returns whether the league's graph has this edge (commands only; time and ball make the others).
 pub fn follows(from: Phase<Colour>, to: Phase<Colour>) -> bool {
     match to {
         Phase::Halt => true,

@@ -74,7 +74,7 @@ fn every_check_in_every_state_is_read_as_it_was_sent_and_the_longest_fits() {
 }
 
 #[test]
-fn a_changed_bit_another_key_another_team_and_a_wheel_that_does_not_exist_are_refused() {
+fn changed_bits_other_keys_other_teams_and_impossible_wheels_are_refused() {
     let keys = KEY.of_team();
     let whole = reporter().seal(5, &report(CHECKS[4], CheckState::Passed(1.0)));
     for bit in 0..8 * whole.len() {
@@ -94,8 +94,8 @@ fn a_changed_bit_another_key_another_team_and_a_wheel_that_does_not_exist_are_re
 #[test]
 fn a_teammate_does_not_open_it_and_a_host_in_play_refuses_it_for_its_payload() {
     let packet = reporter().seal(5, &report(Check::Radio, CheckState::Failed(Finding::Loses(70, 30))));
-    let mate = RobotId::new(4).unwrap();
-    let mut teammate = Link::new(TEAM, mate, KEY.of_robot(mate), 1);
+    let other = RobotId::new(4).unwrap();
+    let mut teammate = Link::new(TEAM, other, KEY.of_robot(other), 1);
     assert_eq!(teammate.open(Instant(0), &packet), Ok(Received::Elsewhere));
     assert_eq!(teammate.refused().iter().sum::<u32>(), 0);
     assert_eq!(teammate.poll_handshake(Instant(0)), None, "it is nobody's teammate");
@@ -105,7 +105,7 @@ fn a_teammate_does_not_open_it_and_a_host_in_play_refuses_it_for_its_payload() {
 }
 
 #[test]
-fn what_is_wrong_says_what_to_look_at() {
+fn every_fault_says_what_to_look_at() {
     for finding in findings() {
         let text = finding.to_string();
         assert!(text.len() > 20 && !text.contains("the no wheel"), "{text}");

@@ -29,7 +29,7 @@ fn a_frame_has_the_bytes_of_the_specification() {
 }
 
 #[test]
-fn a_frame_to_several_has_a_tag_for_each_and_every_flipped_bit_is_noticed_by_those_it_concerns() {
+fn a_frame_to_several_has_a_tag_each_and_each_notices_its_flipped_bits() {
     let keys = TeamKey([9; 16]).of_team();
     let sent = to_several(&[0, 4, 15]);
     let mut out = sent.emit_to_audience(&keys).unwrap();

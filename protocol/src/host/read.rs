@@ -9,7 +9,7 @@ use rules::{Phase, Side};
 use serde::Deserialize;
 
 use super::{HostMessage, PART_ROBOTS_MAX, WIRE_ROBOT_LEN, WireBall, WireRobot, WireWho, WorldPart};
-use crate::link::decode;
+use crate::frame::decode;
 use crate::quantized::{WirePoint, WirePose};
 
 impl HostMessage {
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_read_is_what_postcard_reads_whatever_byte_is_changed_or_cut() {
+    fn the_reader_agrees_with_postcard_on_changed_and_cut_bytes() {
         let welcome =
             HostMessage::Welcome(Welcome { to: RobotId::new(3).unwrap(), boot_epoch: 9, offset: 7 });
         let limits = DriveLimits { to: RobotId::ZERO, speed: 1500, acceleration: 900 };

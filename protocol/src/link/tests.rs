@@ -3,7 +3,7 @@
 extern crate std;
 
 use super::*;
-use crate::frame::{Audience, TeamKey};
+use crate::frame::{Audience, TeamKey, packet_to_audience};
 use crate::host::Welcome;
 use crate::host::{Directive, HostCommand, RuleRole, WorldPart};
 use crate::host_link::{HostLink, Opened};
@@ -67,7 +67,7 @@ fn report(link: &mut Link) -> Packet {
 }
 
 /// A robot and its host after their handshake.
-fn acquainted() -> (Link, HostLink) {
+fn after_handshake() -> (Link, HostLink) {
     let (mut link, mut host) = (link(2, 9), host(70));
     assert!(matches!(host.open(NOW, &report(&mut link)), Ok(Opened::Unauthenticated(..))));
     let welcome = host.welcome(robot(2)).unwrap();
@@ -79,19 +79,19 @@ fn acquainted() -> (Link, HostLink) {
 }
 
 /// Both receive a first frame of each other, exchange handshakes, and trust from then on.
-fn acquaint(a: &mut Link, b: &mut Link) {
+fn shake_hands(a: &mut Link, b: &mut Link) {
     let (from_a, from_b) = (a.seal(&beacon(0)), b.seal(&beacon(0)));
     assert!(matches!(b.open(NOW, &from_a), Err(Refusal::Unauthenticated { .. })));
     assert!(matches!(a.open(NOW, &from_b), Err(Refusal::Unauthenticated { .. })));
     let now = Instant(0);
-    let (greets_b, greets_a) = (a.poll_handshake(now).unwrap(), b.poll_handshake(now).unwrap());
-    assert!(a.open(NOW, &greets_a).is_ok() && b.open(NOW, &greets_b).is_ok());
+    let (from_a, from_b) = (a.poll_handshake(now).unwrap(), b.poll_handshake(now).unwrap());
+    assert!(a.open(NOW, &from_b).is_ok() && b.open(NOW, &from_a).is_ok());
 }
 
 #[test]
-fn what_one_seals_another_opens_once() {
+fn a_sealed_frame_is_opened_once_by_its_receiver() {
     let (mut a, mut b) = (link(1, 0), link(2, 0));
-    acquaint(&mut a, &mut b);
+    shake_hands(&mut a, &mut b);
     let packet = a.seal(&beacon(7));
     assert_eq!(b.open(NOW, &packet), Ok(Received::Teammate(robot(1), beacon(7))));
     // After a first frame and a handshake.
@@ -102,7 +102,7 @@ fn what_one_seals_another_opens_once() {
 #[test]
 fn a_forged_packet_does_not_move_the_counter() {
     let (mut a, mut b) = (link(1, 0), link(2, 0));
-    acquaint(&mut a, &mut b);
+    shake_hands(&mut a, &mut b);
     let good = a.seal(&beacon(7));
     let mut forged = good.clone();
     forged[7] = 200;
@@ -114,17 +114,17 @@ fn a_forged_packet_does_not_move_the_counter() {
 fn frames_of_an_earlier_life_are_refused() {
     let (mut old, mut new, mut b) = (link(1, 4), link(1, 5), link(2, 0));
     let late = old.seal(&beacon(1));
-    acquaint(&mut new, &mut b);
+    shake_hands(&mut new, &mut b);
     assert!(b.open(NOW, &new.seal(&beacon(2))).is_ok());
     assert_eq!(b.open(NOW, &late), Err(Refusal::Epoch { seen: 4, current: 5 }));
 }
 
 #[test]
-fn a_host_is_a_stranger_until_it_welcomes_this_life_of_this_robot() {
+fn a_host_is_unauthenticated_until_it_welcomes_this_boot_epoch() {
     let (mut a, mut host) = (link(2, 9), host(70));
     let unauthenticated = Err(Refusal::Unauthenticated { epoch: 70 });
     assert_eq!(a.open(NOW, &host.seal(NOW, &stand(2))), unauthenticated);
-    assert_eq!(a.open(NOW, &host.seal(NOW, &welcome(2, 8))), unauthenticated, "an earlier life");
+    assert_eq!(a.open(NOW, &host.seal(NOW, &welcome(2, 8))), unauthenticated, "an earlier boot epoch");
     assert_eq!(a.open(NOW, &host.seal(NOW, &welcome(3, 9))), Ok(Received::Elsewhere), "another robot");
     assert_eq!(a.refused()[8], 2);
     assert!(a.open(NOW, &host.seal(NOW, &welcome(2, 9))).is_ok());
@@ -133,8 +133,8 @@ fn a_host_is_a_stranger_until_it_welcomes_this_life_of_this_robot() {
 }
 
 #[test]
-fn after_a_boot_a_recording_of_the_host_moves_no_one() {
-    let (mut before, mut host) = acquainted();
+fn after_a_boot_recorded_frames_of_the_host_are_refused() {
+    let (mut before, mut host) = after_handshake();
     let recorded =
         [host.seal(NOW, &welcome(2, 9)), host.seal(NOW, &stand(2)), host.seal(NOW, &world(0, 0, 1))];
     for packet in &recorded {
@@ -148,10 +148,10 @@ fn after_a_boot_a_recording_of_the_host_moves_no_one() {
 
 #[test]
 fn a_host_that_starts_again_takes_over_and_the_old_one_is_refused() {
-    let (mut a, mut old) = acquainted();
+    let (mut a, mut old) = after_handshake();
     let mut new = host(71);
     assert_eq!(a.open(NOW, &new.seal(NOW, &stand(2))), Err(Refusal::Unauthenticated { epoch: 71 }));
-    assert!(a.open(NOW, &old.seal(NOW, &stand(2))).is_ok(), "a stranger moves nothing");
+    assert!(a.open(NOW, &old.seal(NOW, &stand(2))).is_ok(), "an unauthenticated host moves nothing");
     assert!(a.open(NOW, &new.seal(NOW, &welcome(2, 9))).is_ok());
     assert!(a.open(NOW, &new.seal(NOW, &stand(2))).is_ok());
     assert_eq!(a.open(NOW, &old.seal(NOW, &stand(2))), Err(Refusal::Epoch { seen: 70, current: 71 }));
@@ -159,7 +159,7 @@ fn a_host_that_starts_again_takes_over_and_the_old_one_is_refused() {
 
 #[test]
 fn a_host_receives_robots_and_refuses_hosts() {
-    let (mut a, mut host) = acquainted();
+    let (mut a, mut host) = after_handshake();
     let telemetry = TeamMessage::Telemetry(Telemetry { battery: 1640, host: 70, ..Telemetry::default() });
     assert_eq!(host.open(NOW, &a.seal(&telemetry)), Ok(Opened::Believed(robot(2), telemetry)));
     let mut second = HostLink::new(TeamId(1), TeamKey::ZERO, 71);
@@ -175,7 +175,7 @@ fn telemetry_of(battery: u16) -> TeamMessage {
 
 #[test]
 fn a_part_that_cannot_be_is_no_message() {
-    let (mut a, mut host) = acquainted();
+    let (mut a, mut host) = after_handshake();
     for (part, parts) in [(0, 0), (2, 2), (3, 2), (0, PARTS_MAX as u8 + 1), (255, 255)] {
         assert_eq!(
             a.open(NOW, &host.seal(NOW, &world(1, part, parts))),
@@ -191,8 +191,8 @@ fn a_part_that_cannot_be_is_no_message() {
 }
 
 #[test]
-fn what_is_lost_of_snapshots_is_counted_by_their_numbers() {
-    let (mut a, mut host) = acquainted();
+fn lost_parts_of_snapshots_are_counted_by_their_numbers() {
+    let (mut a, mut host) = after_handshake();
     // Of snapshots 254, 255, 0, 1, 2 with two parts each: all of 254, half of 255, nothing of 0 and 1, all
     // of 2.
     for (snapshot, part) in [(254, 0), (254, 1), (255, 1), (2, 0), (2, 1)] {
@@ -206,7 +206,7 @@ fn what_is_lost_of_snapshots_is_counted_by_their_numbers() {
 
 #[test]
 fn refusals_of_every_kind_reach_the_hosts_telemetry_each_in_its_place() {
-    let (mut a, mut host) = acquainted();
+    let (mut a, mut host) = after_handshake();
     let good = host.seal(NOW, &stand(2));
     let key = TeamKey::ZERO.of_robot(robot(2)).host;
     let sealed = |sender: Sender, epoch: u32, counter: u32, payload: &[u8]| {
@@ -257,7 +257,7 @@ fn refusals_of_every_kind_reach_the_hosts_telemetry_each_in_its_place() {
 
 #[test]
 fn a_frame_that_was_withheld_is_stale_after_200_ms_and_moves_nothing() {
-    let (mut a, mut host) = acquainted();
+    let (mut a, mut host) = after_handshake();
     let withheld: std::vec::Vec<Packet> =
         (0..50).map(|n| host.seal(NOW + Duration::millis(10 * n), &stand(2))).collect();
     // Delivered one after the other, each 10 ms after the last: the first one 250 ms late.
@@ -284,8 +284,8 @@ fn a_withheld_welcome_of_a_dead_host_does_not_lead_a_robot() {
 }
 
 #[test]
-fn a_robot_whose_clock_stood_still_asks_for_a_welcome_instead_of_taking_old_frames_for_fresh() {
-    let (mut a, mut host) = acquainted();
+fn a_robot_whose_clock_stood_still_refuses_old_frames_until_a_welcome() {
+    let (mut a, mut host) = after_handshake();
     // The host's clock has advanced by ten seconds, the robot's has not.
     let later = NOW + Duration::millis(10_000);
     assert_eq!(a.open(NOW, &host.seal(later, &stand(2))), Err(Refusal::Stale));
@@ -298,7 +298,7 @@ fn a_robot_whose_clock_stood_still_asks_for_a_welcome_instead_of_taking_old_fram
 
 #[test]
 fn another_robots_keys_make_no_frame_of_the_host_that_this_robot_believes() {
-    let (mut a, mut host) = acquainted();
+    let (mut a, mut host) = after_handshake();
     let stolen = TeamKey::ZERO.of_robot(robot(3));
     let command = host.seal(NOW, &stand(2));
     let frame = Frame::parse(&command, TeamId(1)).unwrap();
@@ -328,17 +328,17 @@ fn another_robots_keys_make_no_frame_of_the_host_that_this_robot_believes() {
 }
 
 #[test]
-fn after_a_boot_a_recording_of_a_teammate_is_not_believed_and_keeps_the_teammate_from_nothing() {
+fn after_a_boot_recordings_of_a_teammate_are_refused_without_harm_to_it() {
     let (mut teammate, mut before) = (link(1, 5), link(2, 8));
-    acquaint(&mut teammate, &mut before);
+    shake_hands(&mut teammate, &mut before);
     let recorded: std::vec::Vec<Packet> = (0..20).map(|n| teammate.seal(&beacon(n))).collect();
     let mut after = link(2, 9);
     for packet in recorded.iter().chain(&recorded) {
         assert_eq!(after.open(NOW, packet), Err(Refusal::Unauthenticated { epoch: 5 }));
     }
-    let mut born_again = link(1, 6);
-    acquaint(&mut born_again, &mut after);
-    assert!(after.open(NOW, &born_again.seal(&beacon(7))).is_ok());
+    let mut rebooted = link(1, 6);
+    shake_hands(&mut rebooted, &mut after);
+    assert!(after.open(NOW, &rebooted.seal(&beacon(7))).is_ok());
     for packet in &recorded {
         assert_eq!(after.open(NOW, packet), Err(Refusal::Epoch { seen: 5, current: 6 }));
     }
@@ -365,8 +365,8 @@ fn random_bytes_never_panic() {
 }
 
 #[test]
-fn what_is_for_another_receiver_is_not_opened_and_counts_for_nothing() {
-    let (mut link, mut host) = acquainted();
+fn frames_for_other_receivers_are_neither_opened_nor_counted() {
+    let (mut link, mut host) = after_handshake();
     let mut teammate = self::link(3, 5);
     let telemetry = teammate.seal(&TeamMessage::Telemetry(Telemetry::default()));
     let others = [host.seal(NOW, &stand(3)), host.seal(NOW, &welcome(3, 9)), telemetry];

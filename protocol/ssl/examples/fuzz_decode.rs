@@ -39,7 +39,7 @@ fn main() -> ExitCode {
     }
     println!(
         "{} packets of {} seeds broken (seed {seed}), no panic: {} still decode, {} are refused; {} are \
-         told as vision, referee or tracker; {} messages out of broken log files, {} out of broken streams; {:.1} s",
+         recognised as vision, referee or tracker; {} messages out of broken log files, {} out of broken streams; {:.1} s",
         total.packets,
         seeds.len(),
         total.decoded,
@@ -55,9 +55,9 @@ fn main() -> ExitCode {
 fn arguments() -> Option<(u64, u64)> {
     let (mut count, mut seed) = (1_000_000, 1);
     let mut arguments = std::env::args().skip(1);
-    while let Some(label) = arguments.next() {
+    while let Some(argument) = arguments.next() {
         let value = arguments.next()?.parse().ok()?;
-        match label.as_str() {
+        match argument.as_str() {
             "--count" => count = value,
             "--seed" => seed = value,
             _ => return None,

@@ -32,7 +32,7 @@ messages! {
     pub struct Vector2 {
         /// Along the field's length, m (m/s).
         x: f32 [float, required] = 1;
-        /// To the left of +x, m (m/s).
+        /// Coordinate to the left of +x, m (m/s).
         y: f32 [float, required] = 2;
     }
 
@@ -41,7 +41,7 @@ messages! {
     pub struct Vector3 {
         /// Along the field's length, m (m/s).
         x: f32 [float, required] = 1;
-        /// To the left of +x, m (m/s).
+        /// Coordinate to the left of +x, m (m/s).
         y: f32 [float, required] = 2;
         /// Up from the ground, m (m/s).
         z: f32 [float, required] = 3;

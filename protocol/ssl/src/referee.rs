@@ -11,39 +11,39 @@ messages! {
     /// The state of the match, repeated whether it changed or not.
     #[derive(Clone, PartialEq, Message)]
     pub struct Referee {
-        /// When this packet was sent, µs, Unix time.
+        /// Time of sending, µs, Unix time.
         packet_timestamp: u64 [uint64, required] = 1;
         /// Part of the match, [`Stage`].
         stage: i32 [enumeration = "Stage", required] = 2;
         /// Playing time left in the stage, µs; negative when it ran over.
         stage_time_left: Option<i64> [sint64, optional] = 3;
-        /// What holds now, [`Command`].
+        /// Command in force, [`Command`].
         command: i32 [enumeration = "Command", required] = 4;
         /// Rises with each command; the same command may come again with a new count (README, trap 4).
         command_counter: u32 [uint32, required] = 5;
-        /// When the command was given, µs, Unix time.
+        /// Time of the command, µs, Unix time.
         command_timestamp: u64 [uint64, required] = 6;
         /// State of the yellow team.
         yellow: TeamInfo [message, required] = 7;
         /// State of the blue team.
         blue: TeamInfo [message, required] = 8;
-        /// Where the ball is to be placed, mm. Only to be read in ball placement (README, trap 3).
+        /// Target of the ball's placement, mm. Only to be read in ball placement (README, trap 3).
         designated_position: Option<Point> [message, optional] = 9;
         /// True: blue's own goal is at +x.
         blue_team_on_positive_half: Option<bool> [bool, optional] = 10;
-        /// What will follow the current stop, [`Command`].
+        /// Command that will follow the current stop, [`Command`].
         next_command: Option<i32> [enumeration = "Command", optional] = 12;
         /// Time left for placement, free kick, kickoff or penalty, µs; negative when it ran over.
         current_action_time_remaining: Option<i64> [int64, optional] = 15;
-        /// What was decided since the last command that let the ball move.
+        /// Events decided since the last command that let the ball move.
         game_events: Vec<GameEvent> [message, repeated] = 16;
-        /// What automatic referees proposed and is not decided yet.
+        /// Events that automatic referees proposed and that are not decided yet.
         game_event_proposals: Vec<GameEventProposalGroup> [message, repeated] = 17;
-        /// Which program sends, the same through a session.
+        /// Identifier of the sending program, the same through a session.
         source_identifier: Option<String> [string, optional] = 18;
-        /// What kind of match, [`MatchType`].
+        /// Kind of match, [`MatchType`].
         match_type: Option<i32> [enumeration = "MatchType", optional] = 19;
-        /// What the controller waits for, as text.
+        /// Text about what the controller waits for.
         status_message: Option<String> [string, optional] = 20;
     }
 
@@ -74,11 +74,11 @@ messages! {
         can_place_ball: Option<bool> [bool, optional] = 12;
         /// Robots it may have on the field now.
         max_allowed_bots: Option<u32> [uint32, optional] = 13;
-        /// It asked to substitute a robot at the next chance.
+        /// True if the team asked to substitute a robot at the next chance.
         bot_substitution_intent: Option<bool> [bool, optional] = 14;
-        /// It failed so often that it no longer may place the ball.
+        /// True if the team failed so often that it no longer may place the ball.
         ball_placement_failures_reached: Option<bool> [bool, optional] = 15;
-        /// It may substitute now.
+        /// True if the team may substitute now.
         bot_substitution_allowed: Option<bool> [bool, optional] = 16;
         /// Substitutions left in this half.
         bot_substitutions_left: Option<u32> [uint32, optional] = 17;
@@ -93,7 +93,7 @@ messages! {
     pub struct Point {
         /// Along the field's length, mm.
         x: f32 [float, required] = 1;
-        /// To the left of +x, mm.
+        /// Coordinate to the left of +x, mm.
         y: f32 [float, required] = 2;
     }
 

@@ -83,9 +83,10 @@ impl FrameReader {
 }
 
 /// A stream whose messages cannot be separated any more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StreamError {
     /// A message is longer than is accepted.
+    #[error("a message of {length} bytes, {limit} are accepted; does the port speak the league's protocol?")]
     TooLong {
         /// Length of the message, bytes.
         length: u64,
@@ -93,27 +94,9 @@ pub enum StreamError {
         limit: usize,
     },
     /// The length has ten bytes without an end.
+    #[error("no length before the message; does the port speak the league's protocol without TLS?")]
     EndlessLength,
 }
-
-impl std::fmt::Display for StreamError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::TooLong { length, limit } => write!(
-                f,
-                "a message of {length} bytes, {limit} are accepted; does the port speak the league's protocol?"
-            ),
-            Self::EndlessLength => {
-                write!(
-                    f,
-                    "no length before the message; does the port speak the league's protocol without TLS?"
-                )
-            }
-        }
-    }
-}
-
-impl std::error::Error for StreamError {}
 
 /// Number of bytes of the length itself and the length, once it is complete.
 fn length(bytes: &[u8], limit: usize) -> Result<Option<(usize, usize)>, StreamError> {
@@ -197,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_length_without_an_end_is_reported() {
+    fn a_length_without_an_end_is_an_error() {
         for bytes in [[0x80; 11], [0xff; 11]] {
             let mut reader = FrameReader::new(MESSAGE_MAX);
             reader.push(&bytes);

@@ -32,7 +32,7 @@ messages! {
         robots: Vec<TrackedRobot> [message, repeated] = 4;
         /// The last kick while it lasts.
         kicked_ball: Option<KickedBall> [message, optional] = 5;
-        /// What this source can do, [`Capability`].
+        /// Capabilities of this source, [`Capability`].
         capabilities: Vec<i32> [enumeration = "Capability", repeated, packed = "false"] = 6;
     }
 
@@ -43,22 +43,22 @@ messages! {
         pos: Vector3 [message, required] = 1;
         /// Velocity in space, m/s.
         vel: Option<Vector3> [message, optional] = 2;
-        /// How well it was seen of late, 0–1.
+        /// Share of recent frames in which it was seen, 0–1.
         visibility: Option<f32> [float, optional] = 3;
     }
 
     /// A ball that was kicked, and where it will end if no robot touches it.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct KickedBall {
-        /// Where it was kicked, m.
+        /// Point of the kick, m.
         pos: Vector2 [message, required] = 1;
-        /// Its velocity after the kick, m/s.
+        /// Velocity after the kick, m/s.
         vel: Vector3 [message, required] = 2;
-        /// When it was kicked, s.
+        /// Time of the kick, s.
         start_timestamp: f64 [double, required] = 3;
-        /// When it will be at rest, s.
+        /// Time at which the ball will be at rest, s.
         stop_timestamp: Option<f64> [double, optional] = 4;
-        /// Where it will be at rest, m.
+        /// Point at which the ball will be at rest, m.
         stop_pos: Option<Vector2> [message, optional] = 5;
         /// The robot that kicked it.
         robot_id: Option<TrackedRobotId> [message, optional] = 6;
@@ -73,11 +73,11 @@ messages! {
         pos: Vector2 [message, required] = 2;
         /// Heading, rad, counter-clockwise from +x.
         orientation: f32 [float, required] = 3;
-        /// How fast, m/s, field frame.
+        /// Velocity, m/s, field frame.
         vel: Option<Vector2> [message, optional] = 4;
-        /// How fast it turns, rad/s, counter-clockwise.
+        /// Turning rate, rad/s, counter-clockwise.
         vel_angular: Option<f32> [float, optional] = 5;
-        /// How well it was seen of late, 0–1.
+        /// Share of recent frames in which it was seen, 0–1.
         visibility: Option<f32> [float, optional] = 6;
     }
 

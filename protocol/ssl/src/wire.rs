@@ -10,13 +10,13 @@ pub(crate) struct Field<'a> {
 /// A field's content by its wire type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Value<'a> {
-    /// Wire type 0.
+    /// Wire type 0: a varint.
     Varint(u64),
-    /// Wire type 1.
+    /// Wire type 1: eight bytes.
     Fixed64,
     /// Wire type 2: text, bytes, a message or packed numbers.
     Bytes(&'a [u8]),
-    /// Wire type 5.
+    /// Wire type 5: four bytes.
     Fixed32,
 }
 
@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_wire_type_is_read_and_what_is_no_field_ends_it() {
+    fn each_wire_type_is_read_and_other_bytes_end_the_reading() {
         let bytes = [
             0x08, 0x96, 0x01, // 1: varint 150
             0x11, 0, 0, 0, 0, 0, 0, 0, 0, // 2: eight bytes

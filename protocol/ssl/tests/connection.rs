@@ -40,7 +40,7 @@ fn a_message_in_pieces_comes_when_it_is_whole() {
 }
 
 #[test]
-fn no_one_there_is_reported_with_the_ports() {
+fn a_refused_connection_names_the_ports() {
     let nobody = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port").local_addr().expect("bound");
     let error = Connection::open(nobody, SOON).map(|_| ()).expect_err("nobody listens");
     assert!(matches!(error, NetError::NotConnected { .. }));
@@ -48,7 +48,7 @@ fn no_one_there_is_reported_with_the_ports() {
 }
 
 #[test]
-fn a_closed_connection_is_reported_and_what_came_before_is_received() {
+fn a_closed_connection_is_an_error_after_the_messages_before_it() {
     let (mut stream, mut controller) = raw_pair();
     let bytes = ssl::stream::delimited(&reply("token"));
     stream.write_all(&bytes).expect("sent");
@@ -60,7 +60,7 @@ fn a_closed_connection_is_reported_and_what_came_before_is_received() {
 }
 
 #[test]
-fn what_is_no_message_is_reported() {
+fn bytes_that_are_no_message_are_an_error() {
     let (mut stream, mut controller) = raw_pair();
     stream.write_all(&[0xff; 12]).expect("sent");
     let error = controller.receive::<ControllerToTeam>(SOON).expect_err("no length");

@@ -12,7 +12,7 @@ use ssl::Message;
 use ssl::{common, controller, event, referee, tracker, vision};
 
 #[test]
-fn every_message_decodes_to_what_was_put_in_and_encodes_to_the_same_bytes() {
+fn every_message_decodes_as_assembled_and_encodes_to_the_same_bytes() {
     let mut messages = std::collections::BTreeSet::new();
     for (package, packets, lines) in GOLDEN {
         let mut rest = packets;

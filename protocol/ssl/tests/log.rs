@@ -17,7 +17,7 @@ use ssl::log::{
 };
 
 #[test]
-fn what_we_write_is_byte_for_byte_what_the_leagues_recorder_wrote() {
+fn we_write_the_same_bytes_as_the_leagues_recorder() {
     let theirs = std::fs::read(recordings::path(GRSIM_INDEXED)).expect("the recording");
     let mut writer = LogWriter::indexed(Vec::new()).expect("a header");
     write_all(&mut writer, &recordings::records(GRSIM));

@@ -11,7 +11,7 @@ use recordings::{GRSIM, GRSIM_INDEXED};
 use ssl::log::{Index, LogWriter, MessageKind, Place, Record, open_at};
 
 #[test]
-fn every_way_leads_to_the_first_message_of_that_time_or_later() {
+fn every_method_finds_the_first_message_of_that_time_or_later() {
     let records = recordings::records(GRSIM);
     let scratch = Scratch::new("ways");
     let indexed = recordings::path(GRSIM_INDEXED);
@@ -60,7 +60,7 @@ fn our_files_have_an_index_and_gzipped_ones_have_none() {
 }
 
 #[test]
-fn a_broken_index_is_reported_and_the_headers_are_read_instead() {
+fn a_broken_index_gives_its_reason_and_the_headers_are_read_instead() {
     let records = recordings::records(GRSIM);
     let scratch = Scratch::new("broken");
     let file = std::fs::read(recordings::path(GRSIM_INDEXED)).expect("the recording");
@@ -73,14 +73,14 @@ fn a_broken_index_is_reported_and_the_headers_are_read_instead() {
         ("do not rise", index + 16 + 8 * 100, &7u64.to_be_bytes()),
         ("no index message", index + 11, &[4]),
     ];
-    for (description, at, bytes) in wrong {
+    for (reason, at, bytes) in wrong {
         let mut file = file.clone();
         file[at..at + bytes.len()].copy_from_slice(bytes);
         let path = scratch.file("broken.log", &file);
         let (mut reader, place) = open_at(&path, records[3000].timestamp_ns).expect("opens");
-        let Place::Headers(Some(why)) = place else { panic!("{description}: {place:?}") };
-        assert!(why.contains(description), "{why}, not {description}");
-        assert_eq!(reader.next().as_ref(), Some(&records[3000]), "{description}");
+        let Place::Headers(Some(why)) = place else { panic!("{reason}: {place:?}") };
+        assert!(why.contains(reason), "{why}, not {reason}");
+        assert_eq!(reader.next().as_ref(), Some(&records[3000]), "{reason}");
     }
 }
 

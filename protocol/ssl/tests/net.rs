@@ -42,7 +42,7 @@ fn by_all_interfaces_a_packet_is_received_once() {
 }
 
 #[test]
-fn a_receive_waits_as_long_as_it_is_reported() {
+fn a_receive_waits_for_its_timeout() {
     let mut port = Port::bind(localhost(0)).expect("a port");
     for wait in [0, 30, 0, 60] {
         let wait = Duration::from_millis(wait);
@@ -79,20 +79,20 @@ fn a_client_gets_its_answer() {
 }
 
 #[test]
-fn a_port_that_is_not_shared_is_reported_with_the_command_that_finds_it() {
+fn an_unshared_port_is_an_error_with_the_command_that_finds_its_owner() {
     let taken = Port::bind(localhost(0)).expect("a port");
     let error = Port::bind(taken.address()).expect_err("taken");
     assert!(matches!(error, NetError::Busy { shared: false, .. }), "{error}");
     let taken = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).expect("a port that is not shared");
     let port = taken.local_addr().expect("bound").port();
     let error = Receiver::join(SocketAddrV4::new(GROUP, port), &Interfaces::loopback()).expect_err("taken");
-    let description = error.to_string();
-    assert!(matches!(error, NetError::Busy { shared: true, .. }), "{description}");
-    assert!(description.contains(&format!("ss -ulpn 'sport = :{port}'")), "{description}");
+    let text = error.to_string();
+    assert!(matches!(error, NetError::Busy { shared: true, .. }), "{text}");
+    assert!(text.contains(&format!("ss -ulpn 'sport = :{port}'")), "{text}");
 }
 
 #[test]
-fn an_interface_that_is_not_there_is_reported_with_those_that_are() {
+fn a_missing_interface_is_an_error_that_lists_the_existing_ones() {
     let there_is = interfaces().expect("interfaces")[0].to_string();
     let by = Interfaces::These(vec!["wlan77".into()]);
     let from_receiver = Receiver::join(free_group(), &by).map(|_| ()).expect_err("no such interface");
@@ -101,14 +101,15 @@ fn an_interface_that_is_not_there_is_reported_with_those_that_are() {
     // An address of the documentation's own: no machine has it.
     let from_port =
         Port::bind("203.0.113.7:0".parse().expect("an address")).map(|_| ()).expect_err("not ours");
-    for (error, wanted) in [(from_receiver, "wlan77"), (from_sender, "wlan77"), (from_port, "203.0.113.7")] {
-        let description = error.to_string();
-        assert!(description.contains(wanted) && description.contains(&there_is), "{description}");
+    for (error, requested) in [(from_receiver, "wlan77"), (from_sender, "wlan77"), (from_port, "203.0.113.7")]
+    {
+        let text = error.to_string();
+        assert!(text.contains(requested) && text.contains(&there_is), "{text}");
     }
 }
 
 #[test]
-fn an_address_that_is_no_group_is_reported() {
+fn an_address_that_is_no_group_is_an_error() {
     let address = SocketAddrV4::new(Ipv4Addr::new(192, 168, 0, 1), 10006);
     let error = Receiver::join(address, &Interfaces::All).map(|_| ()).expect_err("no group");
     assert!(error.to_string().contains("192.168.0.1 is no multicast address"), "{error}");
@@ -116,19 +117,19 @@ fn an_address_that_is_no_group_is_reported() {
 }
 
 #[test]
-fn a_datagram_that_udp_cannot_carry_is_reported() {
+fn a_datagram_that_udp_cannot_carry_is_an_error() {
     let sender = Sender::unicast(localhost(9)).expect("a sender");
     let error = sender.send(&vec![0; 70_000]).expect_err("too large");
     assert!(matches!(error, NetError::TooLarge { bytes: 70_000 }), "{error}");
 }
 
 #[test]
-fn no_way_to_a_group_is_reported_with_the_command_that_makes_one() {
+fn a_missing_route_is_an_error_with_the_command_that_adds_one() {
     let to = SocketAddr::from((GROUP, 10006));
-    let description = NetError::NoRoute { to, by: None }.to_string();
+    let text = NetError::NoRoute { to, by: None }.to_string();
     assert!(
-        description.contains("sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo"),
-        "{description}"
+        text.contains("sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo"),
+        "{text}"
     );
     // The system's answer about this machine is one of two, and ours is made of it.
     match route(SocketAddrV4::new(GROUP, 10006)) {
@@ -141,9 +142,9 @@ fn no_way_to_a_group_is_reported_with_the_command_that_makes_one() {
 fn the_loopback_probe_says_what_works_here() {
     let probe = probe_loopback(GROUP, SOON);
     let LoopbackProbe::Works { league_sends_by } = &probe else { panic!("{probe}") };
-    let description = probe.to_string();
+    let text = probe.to_string();
     let alone = league_sends_by.is_some_and(|by| by.is_loopback());
-    assert_eq!(description.contains("sudo ip link"), !alone, "{description}");
+    assert_eq!(text.contains("sudo ip link"), !alone, "{text}");
 }
 
 fn localhost(port: u16) -> SocketAddr {

@@ -71,7 +71,7 @@ fn trap_02_robots_where_cameras_overlap_come_twice() {
 }
 
 #[test]
-fn trap_02_the_field_comes_with_one_camera_a_packet_from_grsim_and_always_whole_from_erforce() {
+fn trap_02_geometry_comes_with_one_camera_a_packet_from_grsim_but_whole_from_erforce() {
     for (name, packets, cameras) in [(GRSIM, 168, vec![0, 1, 2, 3]), (ERFORCE, 1483, vec![0])] {
         let geometries = geometries(name);
         assert_eq!(geometries.len(), packets, "{name}");
@@ -89,15 +89,15 @@ fn trap_02_the_field_comes_with_one_camera_a_packet_from_grsim_and_always_whole_
 }
 
 #[test]
-fn trap_03_a_place_for_the_ball_is_reported_where_none_is_to_be_placed() {
+fn trap_03_a_designated_position_comes_with_commands_that_place_no_ball() {
     let packets = recordings::referee(GRSIM_NOISY);
-    let reported: BTreeSet<_> = packets
+    let designated: BTreeSet<_> = packets
         .iter()
         .filter(|(_, packet)| packet.designated_position.is_some())
         .map(|(_, packet)| packet.command())
         .collect();
     let beside = [Command::Halt, Command::Stop, Command::NormalStart, Command::PrepareKickoffYellow];
-    assert!(beside.iter().all(|command| reported.contains(command)), "{reported:?}");
+    assert!(beside.iter().all(|command| designated.contains(command)), "{designated:?}");
     // In mm, where all other values of the referee are in m.
     let place = packets.iter().find(|(_, packet)| packet.command() == Command::BallPlacementBlue);
     let place = place.and_then(|(_, packet)| packet.designated_position).expect("a placement");
@@ -237,7 +237,7 @@ fn trap_08_balls_roll_differently_in_each_simulator() {
 }
 
 #[test]
-fn trap_09_feedback_names_robots_that_are_not_there_misses_some_that_are_and_names_some_twice() {
+fn trap_09_feedback_names_absent_robots_misses_present_ones_and_names_some_twice() {
     // ER-Force's simulator, ideal: five robots a team were seen on the field, six answer, always.
     let clean = responses("robot_control_responses_divB_clean.hex.log");
     assert_eq!(clean.len(), 6449);

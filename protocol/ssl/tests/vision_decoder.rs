@@ -34,7 +34,7 @@ fn packets_of_all_programs_mixed_decode_as_they_do_alone() {
 }
 
 #[test]
-fn broken_packets_are_refused_as_a_plain_decode_refuses_them_and_leave_nothing_behind() {
+fn broken_packets_are_refused_as_by_a_plain_decode_and_leave_no_trace() {
     let seeds = mutate::seeds(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests"));
     let sound: Vec<_> = seeds.iter().filter(|(_, bytes)| WrapperPacket::decode(&bytes[..]).is_ok()).collect();
     let sound: Vec<_> = sound.into_iter().cloned().collect();

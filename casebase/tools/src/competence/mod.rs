@@ -21,34 +21,20 @@ use crate::coverage::Counters;
 
 pub use twins::{Shared, shared};
 
-/// Role of a case in the library's coverage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum CompetenceRole {
-    /// The only candidate for some problem.
-    Pivotal,
-    /// Covers its problems as others do together.
-    Spanning,
-    /// Covers the problems of another case.
-    Support,
-    /// Within another case's coverage.
-    Auxiliary,
-    /// Covers none of the problems.
-    Idle,
-}
-
-impl CompetenceRole {
-    /// All of them, the most important first.
-    pub const ALL: [Self; 5] = [Self::Pivotal, Self::Spanning, Self::Support, Self::Auxiliary, Self::Idle];
-
-    /// The role's name in tables and JSON, lower case.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Pivotal => "pivotal",
-            Self::Spanning => "spanning",
-            Self::Support => "support",
-            Self::Auxiliary => "auxiliary",
-            Self::Idle => "idle",
-        }
+geometry::labels! {
+    /// Role of a case in the library's coverage, the most important first.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    pub enum CompetenceRole {
+        /// The only candidate for some problem.
+        Pivotal = "pivotal",
+        /// Covers its problems as others do together.
+        Spanning = "spanning",
+        /// Covers the problems of another case.
+        Support = "support",
+        /// Within another case's coverage.
+        Auxiliary = "auxiliary",
+        /// Covers none of the problems.
+        Idle = "idle",
     }
 }
 
@@ -63,22 +49,19 @@ pub fn roles(counters: &Counters, shared: &[Shared]) -> Vec<CompetenceRole> {
             _ => CompetenceRole::Pivotal,
         })
         .collect();
-    let mut mark = |case: u16, role: CompetenceRole| {
-        let slot = &mut roles[usize::from(case)];
-        if *slot != CompetenceRole::Pivotal {
-            *slot = (*slot).max(role);
-        }
-    };
     for pair in shared {
-        let [a, b] = pair.cases;
-        let [of_a, of_b] = pair.cases.map(|case| counters.cases[usize::from(case)].candidate());
-        let (a_within, b_within) = (pair.problems == of_a, pair.problems == of_b);
-        if a_within {
-            mark(b, CompetenceRole::Support);
-            mark(a, if b_within { CompetenceRole::Support } else { CompetenceRole::Auxiliary });
-        } else if b_within {
-            mark(a, CompetenceRole::Support);
-            mark(b, CompetenceRole::Auxiliary);
+        let within = pair.cases.map(|case| pair.problems == counters.cases[usize::from(case)].candidate());
+        let pair_roles = match within {
+            [true, true] => [CompetenceRole::Support; 2],
+            [true, false] => [CompetenceRole::Auxiliary, CompetenceRole::Support],
+            [false, true] => [CompetenceRole::Support, CompetenceRole::Auxiliary],
+            [false, false] => continue,
+        };
+        for (case, role) in pair.cases.into_iter().zip(pair_roles) {
+            let slot = &mut roles[usize::from(case)];
+            if *slot != CompetenceRole::Pivotal {
+                *slot = (*slot).max(role);
+            }
         }
     }
     roles

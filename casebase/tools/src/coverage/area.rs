@@ -8,36 +8,34 @@
 
 use casebase::{FieldMm, GoalEnd, PointMm};
 
-/// A strategic area of the field, attack frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Area {
-    /// In front of the own goal.
-    Back,
-    /// Around the centre of the field.
-    Center,
-    /// In front of the opponents' goal.
-    Front,
-    /// Along a touch line, up to the opponents' third.
-    Side,
-    /// Along a touch line in the opponents' third.
-    FrontSide,
-    /// Any of the four corners.
-    Corner,
+geometry::labels! {
+    /// A strategic area of the field, attack frame.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    pub enum Area {
+        /// Area in front of the own goal.
+        Back = "back",
+        /// Around the centre of the field.
+        Center = "center",
+        /// Area in front of the opponents' goal.
+        Front = "front",
+        /// Along a touch line, up to the opponents' third.
+        Side = "side",
+        /// Along a touch line in the opponents' third.
+        FrontSide = "front-side",
+        /// Any of the four corners.
+        Corner = "corner",
+    }
 }
 
 impl Area {
-    /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 6] =
-        [Self::Back, Self::Center, Self::Front, Self::Side, Self::FrontSide, Self::Corner];
-
     /// The area of a ball at `ball` (field frame) for a team that defends `defending`; outside the lines,
     /// that of the nearest part of the field.
     pub fn of(field: FieldMm, ball: PointMm, defending: GoalEnd) -> Self {
         let x = f64::from(defending.attack_sign()) * f64::from(ball.x) / (f64::from(field.length) / 2.0);
         let y = f64::from(ball.y).abs() / (f64::from(field.width) / 2.0);
-        if y > OUTER {
+        if y > SIDE_STRIP_FROM {
             return match x {
-                x if x.abs() > CORNER => Self::Corner,
+                x if x.abs() > CORNER_FROM => Self::Corner,
                 x if x > THIRD => Self::FrontSide,
                 _ => Self::Side,
             };
@@ -48,25 +46,13 @@ impl Area {
             _ => Self::Center,
         }
     }
-
-    /// Its label, that of the case files' directories.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Back => "back",
-            Self::Center => "center",
-            Self::Front => "front",
-            Self::Side => "side",
-            Self::FrontSide => "front-side",
-            Self::Corner => "corner",
-        }
-    }
 }
 
 /// Start of the strips along the touch lines, share of half the width: 0.72 m of 1.8 m, twice what a legged
 /// robot needs to turn around the ball.
-const OUTER: f64 = 0.6;
+const SIDE_STRIP_FROM: f64 = 0.6;
 /// Start of the corners, share of half the length: 0.54 m deep, as the penalty area of 2007.
-const CORNER: f64 = 0.8;
+const CORNER_FROM: f64 = 0.8;
 /// Thirds of the field, share of half the length.
 const THIRD: f64 = 1.0 / 3.0;
 

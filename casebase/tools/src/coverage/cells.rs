@@ -2,8 +2,6 @@
 //! attacked): a ball of the team that attacks towards −x is turned by 180°, as the `both` copies of cases
 //! are. mm.
 
-use std::fmt;
-
 use casebase::{FieldMm, GoalEnd, PointMm};
 
 /// A grid over the field. The field's middle is the grid's; the outermost cells may extend beyond the lines.
@@ -17,12 +15,14 @@ pub struct Cells {
     pub edge_mm: i32,
 }
 
-/// Why a grid cannot be made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Reason why a grid cannot be made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CellsError {
     /// Cells have no size.
+    #[error("cells need an edge of at least 1 mm")]
     NoSize,
     /// More cells than [`Cells::MAX`].
+    #[error("{cells} cells, at most {} can be distinguished; take a larger edge", Cells::MAX)]
     TooMany {
         /// Number of cells that the grid would have.
         cells: u64,
@@ -66,11 +66,15 @@ impl Cells {
     /// ball outside.
     pub fn cell(&self, ball: PointMm, defending: GoalEnd) -> usize {
         let sign = i64::from(defending.attack_sign());
-        let step = |at: i32, count: usize| {
-            let from_corner = 2 * sign * i64::from(at) + count as i64 * i64::from(self.edge_mm);
-            from_corner.div_euclid(2 * i64::from(self.edge_mm)).clamp(0, count as i64 - 1) as usize
-        };
-        step(ball.y, self.rows) * self.columns + step(ball.x, self.columns)
+        let (x, y) = (sign * i64::from(ball.x), sign * i64::from(ball.y));
+        self.step(y, self.rows) * self.columns + self.step(x, self.columns)
+    }
+
+    /// Number of the row or column, of `count`, at this coordinate.
+    fn step(&self, at: i64, count: usize) -> usize {
+        let edge = i64::from(self.edge_mm);
+        let from_corner = 2 * at + count as i64 * edge;
+        from_corner.div_euclid(2 * edge).clamp(0, count as i64 - 1) as usize
     }
 
     /// The middle of a cell, mm, attack frame.
@@ -79,19 +83,6 @@ impl Cells {
         PointMm::new(at(cell % self.columns, self.columns), at(cell / self.columns, self.rows))
     }
 }
-
-impl fmt::Display for CellsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoSize => f.write_str("cells need an edge of at least 1 mm"),
-            Self::TooMany { cells } => {
-                write!(f, "{cells} cells, at most {} can be distinguished; take a larger edge", Cells::MAX)
-            }
-        }
-    }
-}
-
-impl std::error::Error for CellsError {}
 
 #[cfg(test)]
 mod tests {

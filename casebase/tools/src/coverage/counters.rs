@@ -25,7 +25,7 @@ pub struct Counters {
     pub candidates: u64,
     /// Counters by authored case, indexed by its number.
     pub cases: Vec<CaseCounters>,
-    /// By cell of the grid.
+    /// Counts by cell of the grid.
     pub cells: Vec<CellCounters>,
     /// Counters by [`Area`], in the order of [`Area::ALL`].
     pub areas: [AreaCounters; Area::ALL.len()],
@@ -48,7 +48,7 @@ pub struct CaseCounters {
     pub wins: u64,
     /// Number of problems in which it is the only authored candidate: they are lost when its file is deleted.
     pub sole: u64,
-    /// Of these, by the ball's [`Area`].
+    /// Problems of which it is the only candidate, by the ball's [`Area`].
     pub sole_in: [u64; Area::ALL.len()],
     /// Winners of the problems in which it was a candidate and did not win.
     pub beaten_by: BTreeMap<u16, u64>,
@@ -66,7 +66,7 @@ pub struct CaseCounters {
 pub struct CellCounters {
     /// Number of problems with the ball there.
     pub problems: u64,
-    /// Of these, without a candidate.
+    /// Problems without a candidate.
     pub none: u64,
     /// Number of stored candidates.
     pub candidates: u64,
@@ -81,7 +81,7 @@ pub struct CellCounters {
 pub struct AreaCounters {
     /// Number of problems with the ball there.
     pub problems: u64,
-    /// Of these, without a candidate.
+    /// Problems without a candidate.
     pub none: u64,
 }
 
@@ -200,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entropy_is_what_a_hand_calculates() {
+    fn entropy_agrees_with_a_calculation_by_hand() {
         let of = |counts: &[u64]| entropy_bits(counts.iter().copied());
         assert_eq!(of(&[]), 0.0);
         assert_eq!(of(&[7]), 0.0);

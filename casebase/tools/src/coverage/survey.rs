@@ -12,8 +12,8 @@ use super::counters::{COST_BIN_MM, COST_BINS, Counters, RINGS, Reach, VERDICTS};
 pub struct Survey<'a> {
     base: CaseBase<'a>,
     settings: RetrievalSettings,
-    /// With scopes a fifth larger; opponents' paths widen too, so a case that passes these checks would pass
-    /// with the ball's scope alone enlarged.
+    /// Settings with scopes a fifth larger; opponents' paths widen too, so a case that passes these checks
+    /// would pass with the ball's scope alone enlarged.
     wider: RetrievalSettings,
     cells: Cells,
 }
@@ -23,7 +23,7 @@ impl<'a> Survey<'a> {
     pub fn new(base: CaseBase<'a>, settings: &RetrievalSettings, cells: Cells) -> Result<Self, SettingError> {
         let mut wider = settings.clone();
         // exp(−k²·e) where the threshold is exp(−e).
-        let threshold = f64::from(settings.threshold).powf(WIDER * WIDER);
+        let threshold = f64::from(settings.threshold).powf(WIDER_FACTOR * WIDER_FACTOR);
         wider.set("thr", &format!("{threshold:.6}"))?;
         Ok(Self { base, settings: settings.clone(), wider, cells })
     }
@@ -40,7 +40,7 @@ impl<'a> Survey<'a> {
 
     /// Counters at zero, of the size of this library and grid.
     pub fn empty(&self) -> Counters {
-        Counters::new(self.base.len() / COPIES, self.cells.len())
+        Counters::new(self.base.len() / COPIES_PER_CASE, self.cells.len())
     }
 
     /// The counters of numbered problems.
@@ -58,7 +58,7 @@ impl<'a> Survey<'a> {
         let mut best: Option<Match> = None;
         let mut candidates = 0;
         explain(&self.base, problem, &self.settings, |id, verdict| {
-            let Some((step, interval)) = reached.get_mut(usize::from(id.0) / COPIES) else { return };
+            let Some((step, interval)) = reached.get_mut(usize::from(id.0) / COPIES_PER_CASE) else { return };
             *step = (*step).max(step_of(&verdict));
             if let CaseVerdict::Candidate(found) = verdict {
                 candidates += 1;
@@ -75,11 +75,11 @@ impl<'a> Survey<'a> {
         counters.areas[area].problems += 1;
         cell.problems += 1;
         cell.candidates += candidates;
-        let winner = best.as_ref().map(|best| best.case.0 / COPIES as u16);
+        let winner = best.as_ref().map(|best| best.case.0 / COPIES_PER_CASE as u16);
         let mut reach = Vec::new();
         for (authored, (counts, (step, interval))) in (0_u16..).zip(counters.cases.iter_mut().zip(&reached)) {
             counts.verdicts[*step] += 1;
-            if *step == CANDIDATE {
+            if *step == CANDIDATE_INDEX {
                 reach.push(authored);
                 counts.rings[*interval] += 1;
                 match winner {
@@ -117,7 +117,7 @@ impl<'a> Survey<'a> {
         let mut last = None;
         let mut fills = Vec::new();
         explain(&self.base, problem, &self.wider, |id, verdict| {
-            let authored = usize::from(id.0) / COPIES;
+            let authored = usize::from(id.0) / COPIES_PER_CASE;
             if matches!(verdict, CaseVerdict::Candidate(_)) && last != Some(authored) {
                 last = Some(authored);
                 fills.push(authored);
@@ -140,10 +140,10 @@ fn ring(found: &Match) -> usize {
 }
 
 /// Number of stored copies of an authored case.
-const COPIES: usize = casebase::Symmetry::ALL.len();
+const COPIES_PER_CASE: usize = casebase::Symmetry::ALL.len();
 /// The index of "candidate" in [`VERDICTS`].
-const CANDIDATE: usize = VERDICTS.len() - 1;
+const CANDIDATE_INDEX: usize = VERDICTS.len() - 1;
 /// The ends of H, h and l (Ros et al. 2009, §3.4).
 const INTERVALS: [f32; 3] = [0.8, 0.6, 0.4];
 /// Factor of the enlarged radii that are tried for a hole.
-const WIDER: f64 = 1.2;
+const WIDER_FACTOR: f64 = 1.2;

@@ -17,11 +17,11 @@ use crate::league::CaseLeague;
 pub enum ActionText {
     /// Waits for its next ball action.
     Wait,
-    /// Takes the ball.
+    /// The robot takes the ball.
     GetBall,
     /// Goes to a point, mm.
     GoToPoint([i32; 2]),
-    /// Turns.
+    /// The robot turns on the spot.
     Turn(TurnText),
     /// Carries the ball to a point, mm.
     DribbleTo([i32; 2]),
@@ -53,13 +53,13 @@ impl FromStr for ActionText {
     }
 }
 
-/// Where a robot turns to.
+/// Direction to which a robot turns.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TurnText {
-    /// To a heading, whole degrees.
+    /// Heading, whole degrees.
     HeadingDeg(i32),
-    /// To a point, mm.
+    /// Point that is faced, mm.
     Face([i32; 2]),
 }
 
@@ -99,7 +99,7 @@ impl ActionText {
         }
     }
 
-    /// As the value of a case file.
+    /// Value of a case file.
     pub(super) fn value(&self) -> Value {
         let table = |key: &str, value: Value| Value::InlineTable(InlineTable::from_iter([(key, value)]));
         let number = |robot: &u8| Value::from(i64::from(*robot));
@@ -136,7 +136,7 @@ impl ActionText {
     }
 }
 
-/// `[x, y]`.
+/// A point as the TOML list `[x, y]`.
 pub(super) fn point(at: [i32; 2]) -> Value {
     Value::Array(Array::from_iter(at.map(i64::from)))
 }

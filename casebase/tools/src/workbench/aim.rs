@@ -25,22 +25,25 @@ pub(super) fn aimed(case: &Authored, league: &CaseLeague, edit: &Edit) -> Option
             ActionText::PassBall(nearest.number())
         }
         Action::Kick(_) => {
-            let end = |kind: &str| {
-                let kick = Action::Kick(league.kick_id(kind)?);
-                end_of(
-                    &Instead { case: case.mirrored(Symmetry::Identity, league), kicker, index, kick },
-                    league,
-                )
-            };
-            let ends = league.kicks.iter().filter_map(|(kind, _)| Some((kind, square(end(kind)?, to))));
-            ActionText::Kick(ends.min_by(|a, b| a.1.total_cmp(&b.1))?.0.clone())
+            let mut nearest: Option<(f32, &String)> = None;
+            for (kind, _) in &league.kicks {
+                let case = case.mirrored(Symmetry::Identity, league);
+                let kick =
+                    league.kick_id(kind).map(|id| Instead { case, kicker, index, kick: Action::Kick(id) });
+                let Some(end) = kick.and_then(|kick| end_of(&kick, league)) else { continue };
+                let distance = square(end, to);
+                if nearest.is_none_or(|(least, _)| distance < least) {
+                    nearest = Some((distance, kind));
+                }
+            }
+            ActionText::Kick(nearest?.1.clone())
         }
         _ => return None,
     };
     Some(Edit::SetAction { robot, number, action })
 }
 
-/// Squared distance, mm².
+/// Squared distance of two points, mm².
 fn square(at: [f32; 2], to: PointMm) -> f32 {
     let [x, y] = to.to_f32();
     (at[0] - x) * (at[0] - x) + (at[1] - y) * (at[1] - y)
@@ -73,7 +76,7 @@ impl Script for Instead<'_> {
     }
 }
 
-/// Where that kick ends.
+/// End of that kick, mm, field frame.
 fn end_of(script: &Instead<'_>, league: &CaseLeague) -> Option<[f32; 2]> {
     let mut end: Option<Spot> = None;
     let _ = plan_simulation(script, league, |step| {
@@ -83,7 +86,5 @@ fn end_of(script: &Instead<'_>, league: &CaseLeague) -> Option<[f32; 2]> {
             end = Some(to);
         }
     });
-    let end = end?;
-    let [x, y] = if end.on_field { [0.0; 2] } else { script.ball().to_f32() };
-    Some([end.at[0] + x, end.at[1] + y])
+    end.map(|end| end.in_field(script.ball()))
 }

@@ -37,12 +37,12 @@ impl CaseText {
         parts
     }
 
-    /// Number of robots.
+    /// Number of the case's robots.
     pub fn robots(&self) -> usize {
         self.count("teammates")
     }
 
-    /// Number of opponents.
+    /// Number of the case's opponents.
     pub fn opponents(&self) -> usize {
         self.count("opponents")
     }
@@ -132,7 +132,7 @@ impl CaseText {
         Ok(())
     }
 
-    /// What an opponent's scope demands, counted from 1; without the key it ranks alone.
+    /// Demand of an opponent's scope, counted from 1; without the key it ranks alone.
     pub fn presence_of(&self, opponent: usize) -> Option<Presence> {
         match self.table(&Part::Opponent(opponent))?.get("presence") {
             Some(item) => item.as_str().and_then(Presence::from_label),
@@ -301,16 +301,17 @@ fn read(value: &Value) -> Option<ActionText> {
     value.to_string().parse().ok()
 }
 
+/// Returns whether there are lines or comments around a value.
+fn has_layout(value: &Value) -> bool {
+    let decor = value.decor();
+    let around = [decor.prefix(), decor.suffix()];
+    around.iter().flatten().filter_map(|raw| raw.as_str()).any(|text| !text.trim_matches(' ').is_empty())
+}
+
 /// One blank between the values of a list that stands on one line.
 fn tidy(array: &mut Array) {
-    let layout = |value: &Value| {
-        let decor = value.decor();
-        let prefix = decor.prefix().and_then(|raw| raw.as_str()).unwrap_or_default();
-        let suffix = decor.suffix().and_then(|raw| raw.as_str()).unwrap_or_default();
-        prefix.trim_matches(' ').len() + suffix.trim_matches(' ').len()
-    };
     // Where there are lines or comments their author's layout stays.
-    if array.iter().any(|value| layout(value) > 0) {
+    if array.iter().any(has_layout) {
         return;
     }
     for (index, value) in array.iter_mut().enumerate() {

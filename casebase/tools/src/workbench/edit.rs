@@ -15,94 +15,94 @@ use crate::keys::{COORDINATES, POSITIVE};
 pub enum Edit {
     /// Puts ball, robot, opponent or an action's point there.
     Move {
-        /// What is moved.
+        /// Object that is moved.
         part: Part,
-        /// Where to.
+        /// New position, mm, field frame.
         to: [i32; 2],
     },
     /// Moves the whole case.
     MoveAll {
-        /// By so much.
+        /// Displacement, mm, x and y.
         by: [i32; 2],
     },
     /// Gives ball or opponent a scope.
     Scope {
-        /// Whose.
+        /// Ball or opponent of the scope.
         part: Part,
-        /// Both radii.
+        /// New radii τx and τy, mm.
         radii: [i32; 2],
     },
     /// Says what an opponent's scope demands.
     Presence {
-        /// Which opponent.
+        /// Number of the opponent, from 1.
         opponent: usize,
-        /// What it demands.
+        /// Demand of the scope.
         presence: Presence,
     },
     /// Says what the case is for.
     Intent {
-        /// One sentence.
+        /// Intent, in one sentence.
         intent: String,
     },
     /// Says which goal is defended.
     Defending {
-        /// `yellow` or `cyan`.
+        /// Goal that is defended, `yellow` or `cyan`.
         goal: String,
     },
     /// Puts another action in the place of one.
     SetAction {
-        /// Whose.
+        /// Number of the robot, from 1.
         robot: usize,
-        /// Which.
+        /// Number of the action, from 1.
         number: usize,
         /// The action that it becomes.
         action: ActionText,
     },
     /// Adds an action; a pass that its receiver does not expect yet is added to its list too.
     AddAction {
-        /// Whose.
+        /// Number of the robot, from 1.
         robot: usize,
-        /// Its number afterwards.
+        /// Number of the new action, from 1.
         number: usize,
-        /// The action.
+        /// Action that is added.
         action: ActionText,
     },
     /// Takes an action out.
     RemoveAction {
-        /// Whose.
+        /// Number of the robot, from 1.
         robot: usize,
-        /// Which.
+        /// Number of the action, from 1.
         number: usize,
     },
     /// Moves an action within its list.
     MoveAction {
-        /// Whose.
+        /// Number of the robot, from 1.
         robot: usize,
-        /// Which.
+        /// Number of the action, from 1.
         number: usize,
-        /// Its number afterwards.
+        /// New number of the action, from 1.
         to: usize,
     },
     /// Adds a robot that waits.
     AddRobot {
-        /// Its place.
+        /// Position of the robot, mm.
         at: [i32; 2],
     },
     /// Takes a robot out, with the passes to and from it; those behind it get other numbers.
     RemoveRobot {
-        /// Which.
+        /// Number of the robot, from 1.
         robot: usize,
     },
-    /// Adds an opponent.
+    /// Adds an opponent with its scope.
     AddOpponent {
-        /// Its place.
+        /// Position of the opponent, mm.
         at: [i32; 2],
         /// The radii of its scope.
         scope: [i32; 2],
     },
     /// Takes an opponent out.
     RemoveOpponent {
-        /// Which.
+        /// Number of the opponent, from 1.
         opponent: usize,
     },
 }
@@ -110,17 +110,17 @@ pub enum Edit {
 impl Edit {
     /// The change of the file that is seen as this one in a symmetric copy.
     pub fn under(self, symmetry: Symmetry) -> Self {
-        let mirrored = |[x, y]: [i32; 2]| {
-            let PointMm { x, y } = symmetry.point(PointMm::new(x, y));
-            [x, y]
+        let mut edit = self;
+        let (Self::Move { to: point, .. }
+        | Self::MoveAll { by: point }
+        | Self::AddRobot { at: point }
+        | Self::AddOpponent { at: point, .. }) = &mut edit
+        else {
+            return edit;
         };
-        match self {
-            Self::Move { part, to } => Self::Move { part, to: mirrored(to) },
-            Self::MoveAll { by } => Self::MoveAll { by: mirrored(by) },
-            Self::AddRobot { at } => Self::AddRobot { at: mirrored(at) },
-            Self::AddOpponent { at, scope } => Self::AddOpponent { at: mirrored(at), scope },
-            other => other,
-        }
+        let PointMm { x, y } = symmetry.point(PointMm::new(point[0], point[1]));
+        *point = [x, y];
+        edit
     }
 
     /// The text after this change.
@@ -211,18 +211,20 @@ fn move_all(case: &mut CaseText, by: [i32; 2]) -> Result<(), EditError> {
 
 /// Lets `receiver` expect one more pass of `robot`, where it expects fewer than are played.
 fn answer(case: &mut CaseText, robot: usize, receiver: usize) -> Result<(), EditError> {
-    let count = |case: &CaseText, of: usize, partner: usize, passes: bool| {
-        let wanted = Some((partner as u8, passes));
-        case.actions(of).iter().filter(|action| action.partner() == wanted).count()
-    };
     if receiver == robot || receiver > case.count("teammates") {
         return Ok(());
     }
-    if count(case, robot, receiver, true) > count(case, receiver, robot, false) {
+    let passes = actions_with(case, robot, (receiver as u8, true));
+    if passes > actions_with(case, receiver, (robot as u8, false)) {
         let last = case.actions(receiver).len();
         case.add_action(receiver, last + 1, &ActionText::ReceiveBall(robot as u8))?;
     }
     Ok(())
+}
+
+/// Number of a robot's actions with this partner: passes to it (`true`), or receptions from it.
+fn actions_with(case: &CaseText, robot: usize, partner: (u8, bool)) -> usize {
+    case.actions(robot).iter().filter(|action| action.partner() == Some(partner)).count()
 }
 
 fn remove_robot(case: &mut CaseText, robot: usize) -> Result<(), EditError> {

@@ -1,5 +1,5 @@
-//! `follow`: what a robot may do after the actions before: those that the walk of the plan allows
-//! (docs/case-format.md §3.1). mm, field frame.
+//! `follow`: actions that may follow those before them in a robot's list: those that the simulation of the
+//! plan allows (docs/case-format.md §3.1). mm, field frame.
 
 use casebase::plan_simulation::{PlanError, PlanStep, Script, plan_simulation};
 use casebase::{Action, CaseRobot, GoalEnd, KickId, PointMm, Symmetry};
@@ -8,21 +8,21 @@ use super::action_text::{ActionText, TurnText};
 use crate::authored::{Authored, Mirrored};
 use crate::league::CaseLeague;
 
-/// How far ahead of the robot a new point lies, mm.
+/// Distance of a new point ahead of the robot, mm.
 const AHEAD_MM: i32 = 600;
 
-/// What may be the action of that index, given those before it; its list ends there.
+/// Actions that the robot may have at that index, given those before it; its list ends there.
 pub(super) fn may_be(
     case: &Authored,
     league: &CaseLeague,
     robot: CaseRobot,
     index: usize,
 ) -> Vec<ActionText> {
-    let choices = choices(case, league, robot, index);
-    let fits = |choice: &ActionText| {
+    let mut choices = choices(case, league, robot, index);
+    choices.retain(|choice| {
         choice.action(league).is_some_and(|action| allowed(case, league, robot, index, action))
-    };
-    choices.into_iter().filter(fits).collect()
+    });
+    choices
 }
 
 /// Every action that there is, with points ahead of the robot's place.
@@ -53,34 +53,40 @@ fn choices(case: &Authored, league: &CaseLeague, robot: CaseRobot, index: usize)
 }
 
 fn allowed(case: &Authored, league: &CaseLeague, robot: CaseRobot, index: usize, action: Action) -> bool {
-    let here = (robot, index);
-    // What the walk says of the list up to here with that action at its end.
-    let walk = |last: Action| {
-        let script = Cut { case: case.mirrored(Symmetry::Identity, league), robot, index, last };
+    let cut = |last| Cut { case: case.mirrored(Symmetry::Identity, league), robot, index, last };
+    match action {
+        Action::Wait | Action::Turn(_) | Action::GoToPoint(_) => true,
+        // One robot alone begins with the ball.
+        Action::GetBall if index == 0 => !CaseRobot::first(case.teammates.len())
+            .any(|other| other != robot && case.teammates[other.index()].is_getter()),
+        Action::GetBall | Action::ReceiveBall(_) => cut(action).simulate(league).received,
+        // A robot that could kick holds the ball. The receiver's part of a pass comes with it.
+        Action::DribbleTo(_) | Action::Kick(_) | Action::PassBall(_) => {
+            let last = cut(Action::Kick(KickId(0))).simulate(league);
+            last.played || last.outcome == Err(PlanError::UnknownKick(robot, index))
+        }
+    }
+}
+
+/// Findings of the simulation about the last action of a cut list.
+struct LastAction {
+    outcome: Result<(), PlanError>,
+    /// The ball is passed or kicked by it.
+    played: bool,
+    /// The ball is handed to it.
+    received: bool,
+}
+
+impl Cut<'_> {
+    fn simulate(&self, league: &CaseLeague) -> LastAction {
+        let here = (self.robot, self.index);
         let (mut played, mut received) = (false, false);
-        let outcome = plan_simulation(&script, league, |step| match step {
+        let outcome = plan_simulation(self, league, |step| match step {
             PlanStep::Leg { robot, action, .. } => played |= (robot, action) == here,
             PlanStep::HandOver(hand_over) => received |= hand_over.to == here,
             PlanStep::NeverReached { .. } => {}
         });
-        (outcome, played, received)
-    };
-    match action {
-        Action::Wait | Action::Turn(_) | Action::GoToPoint(_) => true,
-        Action::GetBall if index == 0 => {
-            let begins = |other: &CaseRobot| {
-                let first = case.teammates[other.index()].gameplay.first();
-                *other != robot && first.is_some_and(|(first, _)| *first == Action::GetBall)
-            };
-            // One robot alone begins with the ball.
-            !CaseRobot::first(case.teammates.len()).any(|other| begins(&other))
-        }
-        Action::GetBall | Action::ReceiveBall(_) => walk(action).2,
-        // Whoever could kick holds the ball. Its receiver's part of a pass comes with it.
-        Action::DribbleTo(_) | Action::Kick(_) | Action::PassBall(_) => {
-            let (outcome, played, _) = walk(Action::Kick(KickId(0)));
-            played || outcome == Err(PlanError::UnknownKick(robot, index))
-        }
+        LastAction { outcome, played, received }
     }
 }
 

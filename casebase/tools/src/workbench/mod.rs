@@ -2,7 +2,7 @@
 //! it after each. No input or output: text in, text and data out.
 //!
 //! The text is the one truth: an [`Edit`] changes it and nothing else of it, a [`Sheet`] is worked out from
-//! it anew, and undo is an earlier text.
+//! it again, and undo is an earlier text.
 
 mod action_text;
 mod aim;
@@ -50,12 +50,12 @@ impl Workbench {
         Ok(Self { files, league: league.ok_or(refused)?, findings })
     }
 
-    /// The files.
+    /// Files of the library as they were read.
     pub fn files(&self) -> &Files {
         &self.files
     }
 
-    /// The league's rules.
+    /// Rules of the library's league.
     pub fn league(&self) -> &CaseLeague {
         &self.league
     }
@@ -79,7 +79,13 @@ impl Workbench {
         edit.apply(text)
     }
 
-    /// What is shown of a text.
+    /// Returns whether a finding stands in the library's files as they are, on whatever line.
+    fn is_known(&self, finding: &Finding) -> bool {
+        let Finding { file, code, message, .. } = finding;
+        self.findings.iter().any(|old| (&old.file, &old.code, &old.message) == (file, code, message))
+    }
+
+    /// The sheet of a case's text: findings, robots with their actions, and copies.
     pub fn sheet(&self, name: &str, text: &str) -> Sheet {
         let files = self.files.with(name, text);
         let found = match build(&files) {
@@ -87,18 +93,13 @@ impl Workbench {
             Err(findings) => findings,
         };
         let own = |finding: &&Finding| case_name(&finding.file) == name;
-        let known = |finding: &Finding| {
-            self.findings.iter().any(|old| {
-                (&old.file, old.code, &old.message) == (&finding.file, finding.code, &finding.message)
-            })
-        };
         let case = self.case(name, text);
         Sheet {
             name: name.to_owned(),
             text: text.to_owned(),
             intent: case.as_ref().map(|case| case.intent.clone()).unwrap_or_default(),
             findings: found.iter().filter(own).map(FindingNote::of).collect(),
-            elsewhere: found.iter().filter(|f| !own(f) && !known(f)).map(FindingNote::of).collect(),
+            elsewhere: found.iter().filter(|f| !own(f) && !self.is_known(f)).map(FindingNote::of).collect(),
             robots: case.as_ref().map_or_else(Vec::new, |case| sheet::robots(case, &self.league)),
             copies: case.as_ref().map_or_else(Vec::new, |case| sheet::copies(case, &self.league)),
         }
@@ -117,7 +118,7 @@ pub fn case_name(file: &Path) -> String {
     parts[parts.len().saturating_sub(2)..].join("/")
 }
 
-/// Whether a case may have this name: `region/name` of letters, digits, `-` and `_`.
+/// Returns whether a case may have this name: `region/name` of letters, digits, `-` and `_`.
 pub fn is_case_name(name: &str) -> bool {
     let plain =
         |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));

@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Part {
-    /// The ball.
+    /// The ball, written `ball`.
     Ball,
-    /// A robot.
+    /// A robot by its number: `tm1`.
     Robot(usize),
-    /// An opponent.
+    /// An opponent by its number: `opp1`.
     Opponent(usize),
-    /// A robot's action.
+    /// A robot's action by their numbers: `tm1.2`.
     Action(usize, usize),
 }
 
@@ -35,18 +35,21 @@ impl FromStr for Part {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.parse().ok().filter(|number| (1..1000).contains(number));
-        let robot = |rest: &str| match rest.split_once('.') {
-            None => number(rest).map(Self::Robot),
-            Some((robot, action)) => Some(Self::Action(number(robot)?, number(action)?)),
-        };
         let part = match (text.strip_prefix("tm"), text.strip_prefix("opp")) {
-            (Some(rest), _) => robot(rest),
+            (Some(rest), _) => match rest.split_once('.') {
+                None => number(rest).map(Self::Robot),
+                Some((robot, action)) => number(robot).zip(number(action)).map(|(r, a)| Self::Action(r, a)),
+            },
             (_, Some(rest)) => number(rest).map(Self::Opponent),
             _ => (text == "ball").then_some(Self::Ball),
         };
         part.ok_or_else(|| "expected a part such as ball, tm1, tm1.2 or opp1".to_owned())
     }
+}
+
+/// A number from 1 to 999.
+fn number(text: &str) -> Option<usize> {
+    text.parse().ok().filter(|number| (1..1000).contains(number))
 }
 
 impl TryFrom<String> for Part {

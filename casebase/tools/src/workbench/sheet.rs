@@ -1,7 +1,7 @@
 //! `sheet`: a case file as a person edits it: its text, findings, actions with what may be in their place,
 //! and its geometry in all four symmetries. mm, field frame.
 
-use casebase::plan_simulation::{PlanStep, Script, Spot, plan_simulation};
+use casebase::plan_simulation::{PlanStep, Script, plan_simulation};
 use casebase::{CaseRobot, LegKind, PointMm, Presence, Symmetry};
 use serde::Serialize;
 
@@ -14,11 +14,11 @@ use crate::league::CaseLeague;
 /// All that is shown of a case file. Lists are empty where it cannot be read.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sheet {
-    /// `region/name`.
+    /// Name of the case, `region/name`.
     pub name: String,
     /// The whole text, TOML.
     pub text: String,
-    /// What the case is for.
+    /// Intent of the case.
     pub intent: String,
     /// The findings of `cases check` on this file, but for those of drawn problems.
     pub findings: Vec<FindingNote>,
@@ -35,15 +35,15 @@ pub struct Sheet {
 pub struct FindingNote {
     /// Code of its kind.
     pub code: &'static str,
-    /// `error` or `warning`.
+    /// Severity, `error` or `warning`.
     pub severity: String,
-    /// The file's name.
+    /// Name of the file.
     pub file: String,
-    /// Its line, from 1.
+    /// Line in the file, from 1.
     pub line: u32,
-    /// What is wrong.
+    /// Description of the fault.
     pub message: String,
-    /// How to fix it.
+    /// Advice how to fix it.
     pub hint: String,
 }
 
@@ -61,12 +61,12 @@ impl FindingNote {
     }
 }
 
-/// A robot's list.
+/// Actions of a robot, and those that it may have.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RobotSheet {
-    /// Its actions.
+    /// Actions in their order.
     pub actions: Vec<ActionText>,
-    /// What may be in the place of each, and behind the last, given the actions before.
+    /// Actions that may be in the place of each, and behind the last, given those before.
     pub may_be: Vec<Vec<ActionText>>,
 }
 
@@ -75,22 +75,22 @@ pub struct RobotSheet {
 pub struct CopySheet {
     /// Name of the symmetry.
     pub symmetry: &'static str,
-    /// The goal defended.
+    /// Goal that is defended, `yellow` or `cyan`.
     pub defending: &'static str,
-    /// The ball.
+    /// Position and scope of the ball.
     pub ball: Scoped,
-    /// The robots.
+    /// Robots in their order.
     pub robots: Vec<PlacedRobot>,
-    /// The opponents.
+    /// Opponents in their order.
     pub opponents: Vec<PlacedOpponent>,
-    /// The ball's path.
+    /// Legs of the ball's path.
     pub legs: Vec<LegSheet>,
 }
 
 /// A place with a scope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Scoped {
-    /// Its place.
+    /// Position, mm, field frame.
     pub at: [i32; 2],
     /// The radii of its scope.
     pub scope: [i32; 2],
@@ -99,20 +99,20 @@ pub struct Scoped {
 /// An opponent in one symmetry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PlacedOpponent {
-    /// Its place.
+    /// Position, mm, field frame.
     pub at: [i32; 2],
     /// The radii of its scope.
     pub scope: [i32; 2],
-    /// What the scope demands.
+    /// Demand of the scope.
     pub presence: Presence,
 }
 
 /// A robot in one symmetry.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct PlacedRobot {
-    /// Its place.
+    /// Position, mm, field frame.
     pub at: [i32; 2],
-    /// Its actions.
+    /// Actions in their order.
     pub actions: Vec<ActionText>,
 }
 
@@ -123,26 +123,26 @@ pub struct LegSheet {
     pub robot: u8,
     /// Number of its action.
     pub number: usize,
-    /// Where it begins.
+    /// Start of the leg, mm, field frame.
     pub from: [f32; 2],
-    /// Where it ends.
+    /// End of the leg, mm, field frame.
     pub to: [f32; 2],
-    /// Its radii at the beginning and at the end.
+    /// Radii at the start and at the end, mm.
     pub radii: [i32; 2],
-    /// `pass` or `kick`.
+    /// Kind of the leg, `pass` or `kick`.
     pub kind: &'static str,
 }
 
 /// The actions of every robot.
 pub(super) fn robots(case: &Authored, league: &CaseLeague) -> Vec<RobotSheet> {
     let all = CaseRobot::first(case.teammates.len()).zip(&case.teammates);
-    let sheet = |(robot, teammate): (CaseRobot, &crate::authored::Teammate)| RobotSheet {
+    all.map(|(robot, teammate)| RobotSheet {
         actions: teammate.gameplay.iter().map(|(action, _)| ActionText::of(*action, league)).collect(),
         may_be: (0..=teammate.gameplay.len())
             .map(|index| follow::may_be(case, league, robot, index))
             .collect(),
-    };
-    all.map(sheet).collect()
+    })
+    .collect()
 }
 
 /// The case in all four symmetries.
@@ -163,10 +163,6 @@ fn copy(case: &Authored, league: &CaseLeague, symmetry: Symmetry) -> CopySheet {
         scope: [opponent.scope.x, opponent.scope.y],
         presence: opponent.presence,
     });
-    let on_field = |spot: Spot| {
-        let [x, y] = if spot.on_field { [0.0; 2] } else { ball.to_f32() };
-        [spot.at[0] + x, spot.at[1] + y]
-    };
     let mut legs = Vec::new();
     // As far as the plan can be walked; the findings say what is amiss.
     let _ = plan_simulation(&mirrored, league, |step| {
@@ -174,8 +170,8 @@ fn copy(case: &Authored, league: &CaseLeague, symmetry: Symmetry) -> CopySheet {
             legs.push(LegSheet {
                 robot: robot.number(),
                 number: action + 1,
-                from: on_field(from),
-                to: on_field(to),
+                from: from.in_field(ball),
+                to: to.in_field(ball),
                 radii,
                 kind: if matches!(kind, LegKind::Pass(_)) { "pass" } else { "kick" },
             });

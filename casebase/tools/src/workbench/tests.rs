@@ -128,7 +128,7 @@ fn a_kick_goes_to_the_kind_whose_end_is_nearest_and_a_pass_to_the_nearest_robot(
 }
 
 #[test]
-fn what_may_follow_is_what_the_checks_let_pass() {
+fn actions_that_may_follow_are_those_that_the_checks_accept() {
     let workbench = workbench();
     let sheet = workbench.sheet("center/a", CASE);
     // tm1 holds the ball after get_ball: it may dribble, pass and kick, and receives nothing.
@@ -212,7 +212,7 @@ fn parts_are_read_alike_from_tables_and_from_lists_of_inline_tables() {
 }
 
 #[test]
-fn an_action_is_written_as_it_is_read_and_what_is_none_is_refused() {
+fn actions_are_written_as_read_and_other_texts_are_refused() {
     for text in [
         "\"wait\"",
         "\"get_ball\"",

@@ -9,10 +9,10 @@ use super::{MotorDrivers, share};
 /// The driver of one motor.
 pub trait Bridge {
     /// Applies a share of the battery's voltage, −1 to 1, until the next call; NaN is no current. Whether the
-    /// driver could be told.
+    /// driver took it.
     fn set(&mut self, duty: f32) -> bool;
 
-    /// No current.
+    /// Takes the current off.
     fn off(&mut self);
 }
 
@@ -44,7 +44,7 @@ impl<B: Bridge, D: SetDutyCycle, E: OutputPin, F: InputPin> MotorDrivers for Bri
         }
         // `fold`, because all of them must be set, not only those up to the first that fails.
         let wheels =
-            self.wheels.iter_mut().zip(duty).fold(true, |told, (wheel, duty)| wheel.set(duty) && told);
+            self.wheels.iter_mut().zip(duty).fold(true, |taken, (wheel, duty)| wheel.set(duty) && taken);
         let full = self.dribbler.max_duty_cycle();
         let dribbler = self.dribbler.set_duty_cycle(share(dribbler.max(0.0), full)).is_ok();
         self.is_mute = !(wheels && dribbler);
@@ -54,7 +54,7 @@ impl<B: Bridge, D: SetDutyCycle, E: OutputPin, F: InputPin> MotorDrivers for Bri
     }
 
     fn release(&mut self) {
-        // What cannot be told here has its pull-down, and `has_fault` remembers it.
+        // A wire that cannot be set here has its pull-down, and `has_fault` remembers the failure.
         self.is_mute |= self.enable.set_low().is_err();
         self.wheels.iter_mut().for_each(Bridge::off);
         self.is_mute |= self.dribbler.set_duty_cycle_fully_off().is_err();
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_driver_that_cannot_be_told_stops_all() {
+    fn a_driver_that_refuses_its_order_stops_all() {
         let (pwm, dir) = wheels();
         let (enable, fault) = (Pin::new(), Pin::new());
         fault.put(true);

@@ -22,14 +22,14 @@ pub use shared::HallMotor;
 /// Number of phases of a brushless motor.
 pub const PHASES: usize = 3;
 
-/// What a half bridge does until the next commutation.
+/// Output of a half bridge until the next commutation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhaseOutput {
     /// Switched between battery and ground by the duty cycle.
     High,
-    /// Connected to ground.
+    /// Connected to ground for its whole duration.
     Low,
-    /// Connected to nothing.
+    /// Connected to neither battery nor ground.
     Floating,
 }
 
@@ -123,11 +123,11 @@ impl<P: SetDutyCycle, E: OutputPin, H: InputPin> ThreePwm<P, E, H> {
         let phases = || outputs.iter().zip(0..);
         // The phase that ends first, so that never two are switched against each other.
         let order = phases().filter(|(o, _)| floating(o)).chain(phases().filter(|(o, _)| !floating(o)));
-        let mut told = true;
+        let mut taken = true;
         for (output, phase) in order {
-            told &= self.apply(phase, *output);
+            taken &= self.apply(phase, *output);
         }
-        told || self.float()
+        taken || self.float()
     }
 
     /// Edges of the sensors so far, for an encoder of six counts a turn and pair of poles; they wrap.

@@ -28,7 +28,7 @@ pub trait MotorDrivers {
     /// No current in any of them: the wheels roll freely.
     fn release(&mut self);
 
-    /// Whether a driver has switched itself off, or cannot be reached.
+    /// Returns whether a driver has switched itself off, or cannot be reached.
     fn has_fault(&mut self) -> bool;
 }
 

@@ -26,7 +26,7 @@ pub trait FrameLine {
     fn exchange(&mut self, order: &[u8; FRAME_LEN], came: &mut dyn FnMut(u8)) -> bool;
 }
 
-/// What the driver reports.
+/// Report of the driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DriverState {
     /// A driver has switched itself off.
@@ -38,8 +38,8 @@ pub struct DriverState {
 /// The order for these shares; NaN is no current.
 pub fn order(duty: [f32; WHEELS], dribbler: f32) -> [u8; FRAME_LEN] {
     let dribbler = dribbler.clamp(0.0, 1.0);
-    let [a, b, c, d] = duty.map(|duty| (duty.clamp(-1.0, 1.0) * FULL) as i16);
-    frame(DRIVE, [a, b, c, d, (dribbler * FULL) as i16])
+    let [a, b, c, d] = duty.map(|duty| (duty.clamp(-1.0, 1.0) * FULL_SCALE) as i16);
+    frame(DRIVE, [a, b, c, d, (dribbler * FULL_SCALE) as i16])
 }
 
 /// The order to take the current off.
@@ -55,8 +55,14 @@ fn frame(kind: u8, numbers: [i16; 5]) -> [u8; FRAME_LEN] {
 }
 
 fn crc(bytes: &[u8]) -> u8 {
-    let bit = |crc: u8, _| if crc & 0x80 == 0 { crc << 1 } else { crc << 1 ^ POLYNOMIAL };
-    bytes.iter().fold(0, |crc, byte| (0..8).fold(crc ^ byte, bit))
+    let mut crc = 0;
+    for byte in bytes {
+        crc ^= byte;
+        for _ in 0..8 {
+            crc = if crc & 0x80 == 0 { crc << 1 } else { crc << 1 ^ POLYNOMIAL };
+        }
+    }
+    crc
 }
 
 /// Finds states in what comes from the line, past noise and half frames.
@@ -93,7 +99,7 @@ pub struct Smart<L> {
 }
 
 impl<L: FrameLine> Smart<L> {
-    /// A driver that was told to take the current off. It counts as broken until it has answered.
+    /// A driver without current, which counts as broken until it has answered.
     pub fn new(line: L) -> Self {
         let mut new = Self { line, reader: StateReader::default(), newest: None, silent: 0 };
         new.exchange(&release());
@@ -129,7 +135,7 @@ impl<L: FrameLine> MotorDrivers for Smart<L> {
     }
 
     fn has_fault(&mut self) -> bool {
-        self.newest.is_none_or(|state| state.fault) || self.silent > SILENT_MAX
+        self.newest.is_none_or(|state| state.fault) || self.silent > SILENT_STEPS_MAX
     }
 }
 
@@ -137,30 +143,30 @@ const MARK: u8 = 0xa5;
 const DRIVE: u8 = 1;
 const RELEASE: u8 = 0;
 /// A share of 1.
-const FULL: f32 = 32_767.0;
+const FULL_SCALE: f32 = 32_767.0;
 /// x⁸ + x² + x + 1, as of SMBus.
 const POLYNOMIAL: u8 = 0x07;
 /// Steps of a millisecond without a state after which the driver counts as broken, as long as it drives by
 /// itself.
-const SILENT_MAX: u8 = 20;
+const SILENT_STEPS_MAX: u8 = 20;
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::vec::Vec;
 
-    /// A driver at the other end: checks each order, and answers as it is told.
+    /// A driver at the other end: records each order, and answers with `answer`.
     #[derive(Default)]
     struct Driver {
         orders: Vec<[u8; FRAME_LEN]>,
-        says: Vec<u8>,
+        answer: Vec<u8>,
         refuses: bool,
     }
 
     impl FrameLine for &mut Driver {
         fn exchange(&mut self, order: &[u8; FRAME_LEN], came: &mut dyn FnMut(u8)) -> bool {
             self.orders.push(*order);
-            self.says.clone().into_iter().for_each(came);
+            self.answer.clone().into_iter().for_each(came);
             !self.refuses
         }
     }
@@ -196,27 +202,27 @@ mod tests {
     }
 
     #[test]
-    fn a_driver_counts_as_broken_until_it_answers_when_it_says_so_and_when_it_falls_silent() {
+    fn a_driver_is_broken_until_it_answers_when_it_reports_it_and_when_silent() {
         let mut driver = Driver::default();
         let mut smart = Smart::new(&mut driver);
         assert!(smart.has_fault() && smart.counts().is_none());
-        smart.line.says = state(0, [5, 6, 7, 8]).to_vec();
+        smart.line.answer = state(0, [5, 6, 7, 8]).to_vec();
         smart.drive([0.1; WHEELS], 0.0);
         assert!(!smart.has_fault());
         assert_eq!(smart.counts(), Some([5, 6, 7, 8]));
-        smart.line.says = state(1, [5, 6, 7, 8]).to_vec();
+        smart.line.answer = state(1, [5, 6, 7, 8]).to_vec();
         smart.release();
         assert!(smart.has_fault());
-        smart.line.says = state(0, [5, 6, 7, 9]).to_vec();
+        smart.line.answer = state(0, [5, 6, 7, 9]).to_vec();
         smart.release();
         assert!(!smart.has_fault());
-        smart.line.says.clear();
-        for n in 0..=SILENT_MAX {
+        smart.line.answer.clear();
+        for n in 0..=SILENT_STEPS_MAX {
             assert!(!smart.has_fault(), "{n}");
             smart.release();
         }
         assert!(smart.has_fault());
-        smart.line.says = state(0, [5, 6, 7, 9]).to_vec();
+        smart.line.answer = state(0, [5, 6, 7, 9]).to_vec();
         smart.line.refuses = true;
         smart.release();
         assert!(smart.has_fault(), "an order that was not taken");

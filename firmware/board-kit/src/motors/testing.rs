@@ -1,4 +1,4 @@
-//! `testing`: pins and PWM channels of the tests, which remember what they were told.
+//! `testing`: pins and PWM channels of the tests, which keep their last setting.
 
 use std::cell::Cell;
 use std::rc::Rc;

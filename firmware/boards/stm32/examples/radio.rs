@@ -23,7 +23,7 @@ async fn main(spawner: embassy_executor::Spawner) {
         let bytes = receiver.bytes().await;
         received = received.wrapping_add(bytes.len() as u32);
         sender.send_bytes(bytes).await;
-        defmt::info!("{=u32} bytes, line errors {=u32}", received, radio::noise());
+        defmt::info!("{=u32} bytes, line errors {=u32}", received, radio::line_errors());
     }
 }
 

@@ -19,7 +19,7 @@ async fn main(spawner: embassy_executor::Spawner) {
 
     const NAMES: [&str; 4] = ["front right", "back right", "back left", "front left"];
     /// Duty cycle, share of the battery's voltage: a wheel without load runs 1 m/s at the rim.
-    const RULE_ROLE: f32 = 0.16;
+    const DUTY: f32 = 0.16;
 
     // One task is enough.
     let _ = spawner;
@@ -27,12 +27,12 @@ async fn main(spawner: embassy_executor::Spawner) {
     Timer::after_secs(2).await;
     for (wheel, name) in NAMES.iter().enumerate() {
         for sign in [1.0, -1.0] {
-            let mut rule_role = [0.0; 4];
-            if let Some(one) = rule_role.get_mut(wheel) {
-                *one = sign * RULE_ROLE;
+            let mut duty = [0.0; 4];
+            if let Some(one) = duty.get_mut(wheel) {
+                *one = sign * DUTY;
             }
             defmt::info!("{=str}, {=str}", name, if sign > 0.0 { "counter-clockwise" } else { "clockwise" });
-            drivers.drive(rule_role, 0.0);
+            drivers.drive(duty, 0.0);
             if drivers.has_fault() {
                 defmt::error!("a driver has switched itself off");
             }

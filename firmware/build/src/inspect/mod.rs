@@ -8,8 +8,6 @@ mod budget;
 mod panics;
 mod size;
 
-use std::fmt;
-
 use addr2line::gimli::{self, EndianSlice, RunTimeEndian};
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, SectionFlags, SectionKind, SymbolKind};
 
@@ -47,31 +45,22 @@ impl Section {
 #[derive(Clone, Debug)]
 struct Symbol {
     name: String,
-    /// Without the bit that marks "Thumb".
+    /// Address without the bit that marks "Thumb".
     address: u64,
     size: u64,
     is_code: bool,
 }
 
-/// Why a firmware image cannot be read.
-#[derive(Debug)]
+/// Reason why a firmware image cannot be read.
+#[derive(Debug, thiserror::Error)]
 pub enum ImageError {
-    /// It is no ELF file.
+    /// The image is no ELF file.
+    #[error("no ELF file: {0}")]
     Elf(object::Error),
-    /// Its debug information is damaged.
+    /// The debug information is damaged.
+    #[error("its debug information cannot be read: {0}")]
     Dwarf(gimli::Error),
 }
-
-impl fmt::Display for ImageError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Elf(error) => write!(f, "no ELF file: {error}"),
-            Self::Dwarf(error) => write!(f, "its debug information cannot be read: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for ImageError {}
 
 impl<'a> Image<'a> {
     /// Reads an ELF file.
@@ -210,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_image_says_so() {
+    fn other_bytes_than_an_image_are_an_error() {
         let error = Image::parse(b"no image").err().map(|error| error.to_string());
         assert!(error.is_some_and(|error| error.starts_with("no ELF file")));
     }

@@ -2,12 +2,12 @@
 //! against a list of those that are known to be impossible or wanted (`panics.allow`).
 //!
 //! The list may only shrink: a site that is gone has to be removed from it, and one of the crates that read
-//! external input, or of the brain ([`NEVER`]), must not be on it.
+//! external input, or of the brain ([`NEVER_PANICS`]), must not be on it.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
-use super::{Image, Section, crate_of};
+use super::{Image, Section, Symbol, crate_of};
 
 /// A call of a panic function, with its number of occurrences in the firmware.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,10 +27,6 @@ impl fmt::Display for PanicSite {
 /// All of a firmware image, each with a source line for the report.
 pub fn panic_sites(image: &Image<'_>) -> BTreeMap<PanicSite, Vec<String>> {
     let mut sites: BTreeMap<PanicSite, Vec<String>> = BTreeMap::new();
-    let callee = |address: u64| {
-        let at = image.symbols.partition_point(|symbol| symbol.address <= address).checked_sub(1)?;
-        Some(&image.symbols[at]).filter(|symbol| address < symbol.address + symbol.size)
-    };
     for symbol in image.symbols.iter().filter(|symbol| symbol.is_code && !panics(&symbol.name)) {
         let Some(section) =
             image.sections.iter().find(|section| section.is_code && holds(section, symbol.address))
@@ -38,13 +34,19 @@ pub fn panic_sites(image: &Image<'_>) -> BTreeMap<PanicSite, Vec<String>> {
             continue;
         };
         for (from, to) in calls(section, symbol.address, symbol.size) {
-            if callee(to).is_some_and(|callee| panics(&callee.name)) {
+            if symbol_at(image, to).is_some_and(|callee| panics(&callee.name)) {
                 let (site, line) = written_at(image, from, &symbol.name);
                 sites.entry(site).or_default().push(line);
             }
         }
     }
     sites
+}
+
+/// The function or value that contains an address.
+fn symbol_at<'i>(image: &'i Image<'_>, address: u64) -> Option<&'i Symbol> {
+    let at = image.symbols.partition_point(|symbol| symbol.address <= address).checked_sub(1)?;
+    Some(&image.symbols[at]).filter(|symbol| address < symbol.address + symbol.size)
 }
 
 /// Comparison of a firmware image with the list.
@@ -61,24 +63,15 @@ pub struct PanicVerdict {
 pub struct Allowed(Vec<PanicSite>);
 
 /// Errors of the list.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AllowedError {
     /// A line that is not `crate function  # reason`.
+    #[error("line {0}: expected `crate function  # reason`")]
     Malformed(usize),
     /// A crate that may not panic at all.
+    #[error("line {0}: this crate may not panic at all; remove the panic")]
     Never(usize),
 }
-
-impl fmt::Display for AllowedError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Malformed(line) => write!(f, "line {line}: expected `crate function  # reason`"),
-            Self::Never(line) => write!(f, "line {line}: this crate may not panic at all; remove the panic"),
-        }
-    }
-}
-
-impl std::error::Error for AllowedError {}
 
 impl Allowed {
     /// Reads the list: `crate function  # reason` a line; empty lines and lines of comment are skipped.
@@ -93,7 +86,7 @@ impl Allowed {
             if reason.trim().is_empty() {
                 return Err(AllowedError::Malformed(number));
             }
-            if NEVER.contains(&name) {
+            if NEVER_PANICS.contains(&name) {
                 return Err(AllowedError::Never(number));
             }
             sites.push(PanicSite { crate_name: name.to_owned(), function: function.trim().to_owned() });
@@ -139,8 +132,9 @@ fn written_at(image: &Image<'_>, address: u64, symbol: &str) -> (PanicSite, Stri
             }
         }
     }
-    let unknown = || (PanicSite { crate_name: "?".into(), function: plain(symbol) }, format!("{address:#x}"));
-    found.or(innermost).unwrap_or_else(unknown)
+    found.or(innermost).unwrap_or_else(|| {
+        (PanicSite { crate_name: "?".into(), function: plain(symbol) }, format!("{address:#x}"))
+    })
 }
 
 fn demangled(name: &str) -> String {
@@ -164,7 +158,7 @@ fn plain(name: &str) -> String {
     segments[last..].join("::")
 }
 
-/// Whether the function only panics.
+/// Returns whether the function only panics.
 fn panics(name: &str) -> bool {
     let of_core = [
         "core::panicking::",
@@ -185,20 +179,16 @@ fn holds(section: &Section, address: u64) -> bool {
 /// Tables of literals between instructions are read as instructions too; a literal that equals a call of a
 /// panic function would be a false positive, never a missed one.
 fn calls(section: &Section, address: u64, size: u64) -> Vec<(u64, u64)> {
-    let half = |at: u64| {
-        let index = usize::try_from(at - section.address).ok()?;
-        Some(u16::from_le_bytes(*section.bytes.get(index..)?.first_chunk()?))
-    };
     let mut found = Vec::new();
     let mut at = address;
     while at + 1 < address + size {
-        let Some(first) = half(at) else { break };
+        let Some(first) = half_word(section, at) else { break };
         // 0b111 and one of 01, 10, 11 next start an instruction of 32 bits.
         if first >> 11 < 0b11101 {
             at += 2;
             continue;
         }
-        if let Some(second) = half(at + 2)
+        if let Some(second) = half_word(section, at + 2)
             && first >> 11 == 0b11110
             && matches!(second >> 12, 0b1001 | 0b1011 | 0b1101 | 0b1111)
         {
@@ -207,6 +197,12 @@ fn calls(section: &Section, address: u64, size: u64) -> Vec<(u64, u64)> {
         at += 4;
     }
     found
+}
+
+/// The 16 bits of a section at an address.
+fn half_word(section: &Section, address: u64) -> Option<u16> {
+    let index = usize::try_from(address - section.address).ok()?;
+    Some(u16::from_le_bytes(*section.bytes.get(index..)?.first_chunk()?))
 }
 
 /// Target address of a BL or B.W at `at`.
@@ -222,7 +218,7 @@ fn target(at: u64, first: u16, second: u16) -> u64 {
 }
 
 /// Crates that may not panic at all: those that read the radio, compute, or decide.
-const NEVER: [&str; 6] = ["brain", "protocol", "casebase", "motion", "rules", "geometry"];
+const NEVER_PANICS: [&str; 6] = ["brain", "protocol", "casebase", "motion", "rules", "geometry"];
 /// A panic in one of these is the fault of its caller.
 const STANDARD: [&str; 5] = ["core", "alloc", "std", "compiler-builtins", "heapless"];
 
@@ -247,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn the_list_names_what_is_new_and_what_is_gone() {
+    fn the_comparison_lists_new_sites_and_gone_ones() {
         let list =
             Allowed::parse("# of embassy\n\nembassy-sync Channel::lock  # one thread\nx y # gone\n").unwrap();
         let sites = BTreeMap::from([
@@ -267,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_function_is_reported_without_its_types() {
+    fn a_function_is_named_without_its_type_parameters() {
         assert_eq!(plain("embassy_sync::channel::Channel<M,T,N>::lock"), "Channel::lock");
         assert_eq!(plain("runtime::tasks::brain::{{closure}}"), "tasks::brain");
     }

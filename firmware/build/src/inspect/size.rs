@@ -72,11 +72,11 @@ impl Sizes {
             }
         }
         let all_code: u64 = image.sections.iter().filter(|s| s.is_code).map(|s| s.size).sum();
-        let reported: u64 = crates.values().map(|(flash, _)| flash).sum();
+        let attributed: u64 = crates.values().map(|(flash, _)| flash).sum();
         crates.insert(ASSEMBLY, (all_code.saturating_sub(code), 0));
         crates.insert(
             CONSTANTS,
-            ((flash.saturating_sub(reported)).saturating_sub(all_code - code.min(all_code)), 0),
+            ((flash.saturating_sub(attributed)).saturating_sub(all_code - code.min(all_code)), 0),
         );
         Self { flash, ram, crates: sorted(crates), symbols: sorted(symbols) }
     }

@@ -267,7 +267,7 @@ impl Medium {
         end
     }
 
-    /// The packet of this chip is over: it arrives where it can be heard. Returns whether it asked for no
+    /// The packet of this chip is over: it arrives where it can be received. Returns whether it asked for no
     /// acknowledgement.
     fn land(&mut self, from: usize) -> bool {
         let Some(at) = self.flights.iter().position(|flight| flight.from == from) else { return true };
@@ -282,17 +282,17 @@ impl Medium {
             if !hears || flight.collided || self.happens(self.faults.loss) {
                 continue;
             }
-            let mut heard = flight.clone();
-            if !heard.payload.is_empty() && self.happens(self.faults.damage) {
-                let bit = self.dice.next_u32() as usize % (heard.payload.len() * 8);
-                heard.payload[bit / 8] ^= 1 << (bit % 8);
+            let mut received = flight.clone();
+            if !received.payload.is_empty() && self.happens(self.faults.damage) {
+                let bit = self.dice.next_u32() as usize % (received.payload.len() * 8);
+                received.payload[bit / 8] ^= 1 << (bit % 8);
             }
             if !flight.is_ack && self.happens(self.faults.copies) {
                 let later = self.now + 300_000 + u64::from(self.dice.next_u32() % 19_700_000);
-                let copy = Flight { identity: (heard.identity + 2) & 3, no_ack: true, ..heard.clone() };
+                let copy = Flight { identity: (received.identity + 2) & 3, no_ack: true, ..received.clone() };
                 self.copies.push((later, to, copy));
             }
-            self.arrive(to, heard);
+            self.arrive(to, received);
         }
         no_ack
     }

@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 use super::*;
 
 const TEAM: TeamId = TeamId(1);
-const PATIENCE: Duration = Duration::millis(8);
+const ASSEMBLY_TIME_MAX: Duration = Duration::millis(8);
 
 fn frame(len: usize, fill: u32) -> Packet {
     let mut frame = Packet::from_slice(&[VERSION, TEAM.0]).unwrap();
@@ -16,7 +16,7 @@ fn frame(len: usize, fill: u32) -> Packet {
 
 #[test]
 fn a_frame_of_every_length_comes_back_as_it_was_in_the_fewest_fragments() {
-    let (mut cutter, mut assembler) = (Cutter::new(TEAM), Assembler::new(TEAM, PATIENCE));
+    let (mut cutter, mut assembler) = (Cutter::new(TEAM), Assembler::new(TEAM, ASSEMBLY_TIME_MAX));
     for len in 3..=FRAME_LEN_MAX {
         let frame = frame(len, 0);
         let fragments = cutter.cut(&frame).unwrap();
@@ -30,7 +30,7 @@ fn a_frame_of_every_length_comes_back_as_it_was_in_the_fewest_fragments() {
 }
 
 #[test]
-fn what_is_no_frame_of_this_team_is_refused() {
+fn other_teams_frames_and_other_bytes_are_refused() {
     let mut cutter = Cutter::new(TEAM);
     assert_eq!(cutter.cut(&[VERSION]), Err(NotSent::Length(1)));
     assert_eq!(cutter.cut(&[VERSION, 1]), Err(NotSent::Length(2)));
@@ -41,7 +41,7 @@ fn what_is_no_frame_of_this_team_is_refused() {
 
 #[test]
 fn a_question_and_any_bytes_disturb_nothing() {
-    let (mut cutter, mut assembler) = (Cutter::new(TEAM), Assembler::new(TEAM, PATIENCE));
+    let (mut cutter, mut assembler) = (Cutter::new(TEAM), Assembler::new(TEAM, ASSEMBLY_TIME_MAX));
     let (frame, now) = (frame(60, 1), Instant(5));
     let fragments = cutter.cut(&frame).unwrap();
     assert_eq!(assembler.push(now, &fragments[0]), None);
@@ -53,7 +53,7 @@ fn a_question_and_any_bytes_disturb_nothing() {
 
 #[test]
 fn a_fragment_that_comes_too_late_completes_nothing() {
-    let (mut cutter, mut assembler) = (Cutter::new(TEAM), Assembler::new(TEAM, PATIENCE));
+    let (mut cutter, mut assembler) = (Cutter::new(TEAM), Assembler::new(TEAM, ASSEMBLY_TIME_MAX));
     let fragments = cutter.cut(&frame(60, 1)).unwrap();
     assert_eq!(assembler.push(Instant(0), &fragments[0]), None);
     assert_eq!(assembler.push(Instant(8_001), &fragments[1]), None);
@@ -64,7 +64,7 @@ fn a_fragment_that_comes_too_late_completes_nothing() {
 fn with_loss_copies_and_exchanged_neighbours_every_frame_comes_once_and_as_it_was() {
     let mut dice = Xoshiro128PlusPlus::seed_from_u64(3);
     for loss in [0, 5, 10, 20, 30] {
-        let (mut cutter, mut assembler) = (Cutter::new(TEAM), Assembler::new(TEAM, PATIENCE));
+        let (mut cutter, mut assembler) = (Cutter::new(TEAM), Assembler::new(TEAM, ASSEMBLY_TIME_MAX));
         let mut line: std::vec::Vec<(u32, Payload)> = std::vec::Vec::new();
         for fill in 0..2_000 {
             let len = 3 + dice.next_u32() as usize % (FRAME_LEN_MAX - 2);

@@ -156,7 +156,7 @@ impl Team {
             let chip = air.chip();
             let robot = RobotId::new(robot).unwrap();
             let lines = (chip.spi(), chip.chip_enable(), chip.pause());
-            let end = Robot::start(Instant(0), channel, robot, lines.0, lines.1, lines.2).unwrap();
+            let end = Robot::start(Instant(0), channel, robot, lines).unwrap();
             chip.take_spent();
             Node { end, chip, busy_until: 0, served: 0 }
         });

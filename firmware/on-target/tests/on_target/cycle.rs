@@ -16,26 +16,26 @@ mod tests {
     #[test]
     fn a_robot_listens_adapts_executes_and_leaves_a_case_whose_ball_has_gone() {
         let mut robot = Robot::new();
-        let mut reported = Vec::<Progress, 8>::new();
+        let mut changes = Vec::<Progress, 8>::new();
         let mut first_at = None;
         // Behind the ball, which lies before the goal; the robot has not reached it yet.
         for _ in 0..75 {
             let before = robot.now;
             if let Some(progress) = robot.step(Point::new(1.2, 0.0), Point::new(1.6, 0.0))
-                && reported.last().copied().map(kind) != Some(kind(progress))
+                && changes.last().copied().map(kind) != Some(kind(progress))
             {
                 if matches!(progress, Progress::Adapt { .. }) {
                     first_at.get_or_insert(before);
                 }
-                reported.push(progress).expect("few changes");
+                changes.push(progress).expect("few changes");
             }
         }
         // It listens for one lease, 400 ms, before it proposes (docs/architecture.md §5.1).
-        assert!(first_at.is_some_and(|at| at >= Instant(400_000)), "{first_at:?}: {reported:?}");
+        assert!(first_at.is_some_and(|at| at >= Instant(400_000)), "{first_at:?}: {changes:?}");
         assert_eq!(
-            reported.iter().take(2).copied().map(kind).collect::<Vec<_, 2>>()[..],
+            changes.iter().take(2).copied().map(kind).collect::<Vec<_, 2>>()[..],
             [0, 1],
-            "{reported:?}"
+            "{changes:?}"
         );
         assert!(robot.playing, "a case was chosen");
         // Now it stands beside the ball: it executes.

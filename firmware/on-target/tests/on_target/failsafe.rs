@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tipped_robot_and_a_number_that_is_none_brake_at_once_and_an_empty_battery_after_a_second() {
+    fn tipping_and_nan_brake_at_once_and_an_empty_battery_after_1_s() {
         for (health, wanted, after) in [
             (Health { tipped: true, ..WELL }, 3.0, 1_001),
             (WELL, f32::NAN, 1_001),

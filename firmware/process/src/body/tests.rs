@@ -61,22 +61,22 @@ fn trap_09_every_command_holds_motion_and_dribbler_also_where_nothing_turns() {
 }
 
 #[test]
-fn a_kick_speed_is_said_only_while_a_kick_is_wanted() {
+fn a_kick_speed_is_sent_only_while_a_kick_is_ordered() {
     let mut body = SimulatedBody::new(id(0));
-    let mut reported = |kick| {
+    let mut kick_command = |kick| {
         body.obey(order(Twist::default(), 0.0, kick));
         let command = command(&body);
         (command.kick_speed, command.kick_angle)
     };
-    assert_eq!(reported(OmniKick::Flat(6.0)), (Some(6.0), Some(0.0)));
-    assert_eq!(reported(OmniKick::Chip(4.0)), (Some(4.0), Some(45.0)));
+    assert_eq!(kick_command(OmniKick::Flat(6.0)), (Some(6.0), Some(0.0)));
+    assert_eq!(kick_command(OmniKick::Chip(4.0)), (Some(4.0), Some(45.0)));
     for quiet in [OmniKick::None, OmniKick::Discharge, OmniKick::Flat(0.0), OmniKick::Chip(f32::NAN)] {
-        assert_eq!(reported(quiet), (None, None), "{quiet:?}");
+        assert_eq!(kick_command(quiet), (None, None), "{quiet:?}");
     }
 }
 
 #[test]
-fn what_no_wheels_can_do_is_standing() {
+fn impossible_orders_make_the_robot_stand() {
     let mut body = SimulatedBody::new(id(0));
     body.obey(ActuatorFrame::Omni { wheels: [f32::NAN; 4], dribbler: f32::INFINITY, kick: OmniKick::None });
     let command = command(&body);
@@ -88,7 +88,7 @@ fn what_no_wheels_can_do_is_standing() {
 }
 
 #[test]
-fn trap_09_ours_counts_among_all_configured_robots_and_a_dropped_answer_does_not_drop_the_ball() {
+fn trap_09_our_feedback_is_found_among_all_and_a_lost_one_keeps_the_ball() {
     let mut body = SimulatedBody::new(id(2));
     let feels = |body: &SimulatedBody, at| body.sensors(ms(at)).ball_contact;
     assert!(!feels(&body, 0));

@@ -39,9 +39,9 @@ pub enum Fault {
     CoarseEncoder(u8),
     /// The radio is off.
     NoRadio,
-    /// Its plug is loose: bytes are lost on the line.
+    /// The radio's plug is loose: bytes are lost on the line.
     LooseRadio,
-    /// Its antenna is off: frames are lost in the air.
+    /// The radio's antenna is off: frames are lost in the air.
     NoAntenna,
     /// The break-beam sensor's lamp is off.
     NoLamp,
@@ -73,12 +73,12 @@ impl Fault {
     ];
 }
 
-/// The robot.
+/// Robot on a stand, of simulated parts.
 #[derive(Clone, Debug)]
 pub struct Bench {
     fault: Fault,
     noise: u32,
-    /// Rim speeds, m/s.
+    /// Rim speeds of the wheels, m/s.
     rims: [f32; WHEELS],
     radio: RadioCounts,
     steps: u32,
@@ -136,7 +136,7 @@ impl Bench {
     }
 
     fn receive(&mut self) {
-        if !self.steps.is_multiple_of(STEPS_A_FRAME) || self.fault == Fault::NoRadio {
+        if !self.steps.is_multiple_of(STEPS_PER_FRAME) || self.fault == Fault::NoRadio {
             return;
         }
         let luck = self.dice();
@@ -177,12 +177,12 @@ fn change(values: &mut [f32; WHEELS], n: u8, with: impl Fn(f32) -> f32) {
 
 /// Plays the whole list on that robot, and passes each report on; a person holds a ball for a second, two
 /// seconds after asked to. Returns how long it took.
-pub fn play(fault: Fault, seed: u32, mut told: impl FnMut(CheckReport)) -> Duration {
-    play_steps(fault, seed, |step| step.report.into_iter().for_each(&mut told))
+pub fn play(fault: Fault, seed: u32, mut on_report: impl FnMut(CheckReport)) -> Duration {
+    play_steps(fault, seed, |step| step.report.into_iter().for_each(&mut on_report))
 }
 
-/// As [`play`], with each step of 1 ms passed on.
-pub fn play_steps(fault: Fault, seed: u32, mut told: impl FnMut(&BenchStep)) -> Duration {
+/// Plays as [`play`] does, with each step of 1 ms passed on.
+pub fn play_steps(fault: Fault, seed: u32, mut on_step: impl FnMut(&BenchStep)) -> Duration {
     let (mut bench, mut list) = (Bench::new(fault, seed), BringUp::new());
     let (mut motors, mut asked) = (Motors::Released, None);
     let mut now = Instant(0);
@@ -194,7 +194,7 @@ pub fn play_steps(fault: Fault, seed: u32, mut told: impl FnMut(&BenchStep)) -> 
         if step.check == Some(super::Check::Beam) && asked.is_none() {
             asked = Some(now);
         }
-        told(&step);
+        on_step(&step);
         if step.check.is_none() {
             return now.since(Instant(0));
         }
@@ -213,7 +213,7 @@ const GYRO_STEPS: u32 = 600;
 /// Noise of the battery's divider, V.
 const DIVIDER_NOISE: f32 = 0.05;
 /// A host sends a frame every 10 ms.
-const STEPS_A_FRAME: u32 = 10;
+const STEPS_PER_FRAME: u32 = 10;
 /// The ball comes so long after it was asked for, and goes.
 const BALL_COMES: Duration = Duration::millis(2_000);
 const BALL_GOES: Duration = Duration::millis(3_000);

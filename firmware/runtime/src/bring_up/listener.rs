@@ -1,4 +1,4 @@
-//! `listener`: counts the frames of a host that a robot hears before it knows its team and keys, and keeps
+//! `listener`: counts the frames of a host that a robot receives before it knows its team and keys, and keeps
 //! the newest host's epoch.
 
 use protocol::TeamId;
@@ -20,7 +20,7 @@ pub struct Listener {
 impl Listener {
     /// Takes a packet; others than a host's parts of snapshots are ignored. Only they have numbers without a
     /// gap.
-    pub fn hear(&mut self, packet: &[u8]) {
+    pub fn receive(&mut self, packet: &[u8]) {
         let team = packet.get(1).copied().unwrap_or_default();
         let Ok(frame) = Frame::parse(packet, TeamId(team)) else { return };
         if frame.sender != Sender::Host {
@@ -83,17 +83,17 @@ mod tests {
             let packet = host.seal(Instant(u64::from(n) * 5_000), &part(250_u8.wrapping_add(n / 2), n % 2));
             // Two together, then one more.
             if ![3, 4, 15].contains(&n) {
-                listener.hear(&packet);
+                listener.receive(&packet);
             }
         }
         let limits = DriveLimits { to: RobotId::ZERO, speed: 900, acceleration: 900 };
-        listener.hear(&host.seal(Instant(200_000), &HostMessage::Limits(limits)));
-        listener.hear(b"noise");
+        listener.receive(&host.seal(Instant(200_000), &HostMessage::Limits(limits)));
+        listener.receive(b"noise");
         assert_eq!(listener.counts(2), RadioCounts { received: 17, lost: 3, line_errors: 2 });
         assert_eq!([7, 8].map(|team| listener.host_epoch(TeamId(team))), [3, 0]);
-        // Another start of the host counts anew.
+        // After a restart of the host its numbers start again, and none is missing.
         let mut restarted = HostLink::new(TeamId(7), TeamKey([5; 16]), 4);
-        listener.hear(&restarted.seal(Instant(0), &part(100, 0)));
+        listener.receive(&restarted.seal(Instant(0), &part(100, 0)));
         assert_eq!(listener.counts(0).lost, 3);
     }
 }

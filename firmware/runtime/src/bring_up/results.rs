@@ -1,5 +1,5 @@
-//! `results`: how each check of a robot's first start stands, and the packets that tell it to the host, again
-//! and again: a lost packet only delays, and a host that starts late still gets them all.
+//! `results`: state of each check of a robot's first start, and the packets that report it to the host over and
+//! over: a lost packet only delays, and a host that starts late still gets them all.
 
 use protocol::bring_up::{BringUpReport, CHECKS, CheckState, Reporter};
 use protocol::link::Packet;
@@ -7,10 +7,10 @@ use protocol::{Duration, TeamId};
 
 use super::BenchStep;
 
-/// A packet goes out this often: each check is told at least four times a second, in 2 kB/s.
+/// Period of the packets: each check is reported at least four times a second, in 2 kB/s.
 pub const REPORT_EVERY: Duration = Duration::millis(20);
 
-/// How each check stands, to be told by a robot that has its keys.
+/// State of each check, reported by a robot that has its keys.
 #[derive(Clone, Debug)]
 pub struct Results {
     reporter: Reporter,
@@ -21,12 +21,12 @@ pub struct Results {
 }
 
 impl Results {
-    /// Before the first check.
+    /// Results of which none is known yet.
     pub const fn new(reporter: Reporter) -> Self {
         Self { reporter, counter: 0, states: [None; CHECKS.len()], next: 0 }
     }
 
-    /// The robot's team.
+    /// Team of the robot.
     pub const fn team(&self) -> TeamId {
         self.reporter.team
     }
@@ -41,15 +41,19 @@ impl Results {
         }
     }
 
-    /// The next packet, to be sent every [`REPORT_EVERY`]: the checks that have begun take turns. `host` is
+    /// The next packet, to be sent every [`REPORT_EVERY`]: the checks that have started take turns. `host` is
     /// the epoch of the host that is received, 0 without one. `None` before the first check.
     pub fn packet(&mut self, host: u32) -> Option<Packet> {
         let turns = (self.next..CHECKS.len()).chain(0..self.next);
-        let begun = |number: usize| Some((number, *CHECKS.get(number)?, (*self.states.get(number)?)?));
-        let (number, check, state) = turns.into_iter().find_map(begun)?;
+        let (number, check, state) = turns.into_iter().find_map(|number| self.started(number))?;
         self.next = (number + 1) % CHECKS.len();
         self.counter = self.counter.saturating_add(1);
         Some(self.reporter.seal(self.counter, &BringUpReport { host, check, state }))
+    }
+
+    /// The check of this number with its state, once it has started.
+    fn started(&self, number: usize) -> Option<(usize, super::Check, CheckState)> {
+        Some((number, *CHECKS.get(number)?, (*self.states.get(number)?)?))
     }
 
     fn put(&mut self, check: super::Check, state: CheckState) {
@@ -80,7 +84,7 @@ mod tests {
 
     /// States by check as a receiver has them that loses that share of all packets, and as the robot has
     /// them; a second after the last check.
-    fn told(fault: Fault, loses: f32) -> (BTreeMap<usize, CheckState>, Vec<CheckState>) {
+    fn received_and_own(fault: Fault, loses: f32) -> (BTreeMap<usize, CheckState>, Vec<CheckState>) {
         let (mut results, mut own, mut received) = (Results::new(reporter()), Vec::new(), BTreeMap::new());
         let (mut dice, mut steps) = (1_u32, 0_u32);
         let mut send = |results: &mut Results| {
@@ -107,10 +111,10 @@ mod tests {
     }
 
     #[test]
-    fn every_result_reaches_the_host_with_any_fault_and_with_a_third_of_the_packets_lost() {
+    fn every_result_reaches_the_host_with_any_fault_and_30_percent_of_packets_lost() {
         for fault in Fault::EXAMPLES.map(|(_, fault)| fault) {
             for loses in [0.0, 0.3] {
-                let (received, own) = told(fault, loses);
+                let (received, own) = received_and_own(fault, loses);
                 assert_eq!(own.len(), CHECKS.len());
                 assert_eq!(received.into_values().collect::<Vec<_>>(), own, "{fault:?}, {loses}");
             }
@@ -118,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn before_the_first_check_nothing_is_told_and_a_check_that_runs_is_told_as_running() {
+    fn no_packet_precedes_the_first_check_and_a_running_check_is_reported_as_running() {
         let mut results = Results::new(reporter());
         assert_eq!(results.packet(0), None);
         let motors = crate::wheel::Motors::Released;

@@ -32,7 +32,7 @@ pub fn encode<'b>(problem: &Problem, buffer: &'b mut [u8]) -> Option<&'b [u8]> {
 /// The problems in `memory`, up to the first that cannot be decoded.
 pub fn problems(memory: &[u8]) -> impl Iterator<Item = Problem> + '_ {
     let mut rest = behind_header(memory);
-    (0..label(memory, 4)).map_while(move |_| {
+    (0..word_at(memory, 4)).map_while(move |_| {
         let (problem, behind) = postcard::take_from_bytes(rest).ok()?;
         rest = behind;
         Some(problem)
@@ -41,10 +41,10 @@ pub fn problems(memory: &[u8]) -> impl Iterator<Item = Problem> + '_ {
 
 /// The bytes behind the header, as many as its length field states; none where there are fewer.
 pub fn behind_header(memory: &[u8]) -> &[u8] {
-    memory.get(HEADER_LEN..HEADER_LEN.saturating_add(label(memory, 0))).unwrap_or(&[])
+    memory.get(HEADER_LEN..HEADER_LEN.saturating_add(word_at(memory, 0))).unwrap_or(&[])
 }
 
-fn label(memory: &[u8], at: usize) -> usize {
+fn word_at(memory: &[u8], at: usize) -> usize {
     memory.get(at..at + 4).and_then(|bytes| bytes.try_into().ok()).map_or(0, u32::from_le_bytes) as usize
 }
 
@@ -92,7 +92,7 @@ impl Found {
         [self.case, cost, exponent, similarity, self.players]
     }
 
-    fn from_description([case, cost, exponent, similarity, players]: [u32; 5]) -> Self {
+    fn from_numbers([case, cost, exponent, similarity, players]: [u32; 5]) -> Self {
         Self { case, bits: [cost, exponent, similarity], players }
     }
 }
@@ -114,7 +114,7 @@ impl Answer {
         }
     }
 
-    /// Whether the three methods agree.
+    /// Returns whether the three methods agree.
     pub fn agrees(&self) -> bool {
         self.best == self.scanned && self.counted == self.scanned
     }
@@ -140,7 +140,7 @@ impl FromStr for Answer {
         let mut next = || numbers.next().ok_or(())?;
         let mut found = [Found::default(); 3];
         for found in &mut found {
-            *found = Found::from_description([next()?, next()?, next()?, next()?, next()?]);
+            *found = Found::from_numbers([next()?, next()?, next()?, next()?, next()?]);
         }
         let [best, counted, scanned] = found;
         let answer =

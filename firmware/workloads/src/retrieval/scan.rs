@@ -74,7 +74,7 @@ struct Players {
 /// Every injective map from parts to robots, in the order of the robots' ids.
 struct Search<'s> {
     team: &'s [(RobotId, casebase::PointMm)],
-    /// By part, then by robot, mm.
+    /// Distances by part, then by robot, mm.
     distances: heapless::Vec<heapless::Vec<f32, 11>, 4>,
     best: Option<(u64, heapless::Vec<usize, 4>)>,
 }

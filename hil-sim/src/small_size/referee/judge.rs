@@ -166,7 +166,7 @@ impl InternalReferee {
         let Some(team) = event.by else { return };
         let succeeded = event.what.kind() == Kind::PlacementSucceeded;
         self.accounts.of_mut(team).placed(succeeded);
-        if !self.limits.placement_rule_role
+        if !self.limits.placement_is_mandatory
             || !self.recent.iter().any(|event| event.what.kind().is_ball_out())
         {
             return;

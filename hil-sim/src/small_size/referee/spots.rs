@@ -58,7 +58,7 @@ impl InternalReferee {
             (None, BoundaryLine::Goal(end) | BoundaryLine::GoalOpening(end)) => end.opposite(),
             (None, BoundaryLine::Touch { .. }) => GoalEnd::Negative,
         };
-        let spot = after_out(&self.field, &self.limits, crossing, own, None, false).spot;
+        let spot = after_out(&self.field, &self.limits, crossing, own, None).spot;
         nearest_free_kick_spot(&self.field, &self.limits, spot)
     }
 }

@@ -30,7 +30,7 @@ impl LibraryHandle {
         if !directory.is_dir() {
             return Err(LibraryError::NoDirectory(directory.to_owned()));
         }
-        let library = case_tools::load_telling(directory, on_progress)
+        let library = case_tools::load_with_progress(directory, on_progress)
             .map_err(|findings| LibraryError::Faulty { directory: directory.to_owned(), findings })?;
         let library: &'static Library = Box::leak(Box::new(library));
         let directory: &'static Path = Box::leak(directory.to_owned().into_boxed_path());

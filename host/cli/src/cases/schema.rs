@@ -76,7 +76,7 @@ fn action() -> Value {
             _ => point("[x, y] in mm, field frame."),
         })
     });
-    any(std::iter::once(json!({ "enum": keys::DESCRIPTION })).chain(tables))
+    any(std::iter::once(json!({ "enum": keys::BARE_ACTIONS })).chain(tables))
 }
 
 fn turn(side: &str) -> Value {

@@ -4,7 +4,7 @@ use super::*;
 use crate::League;
 
 const SIDES: [Side; 2] = [Side::Ours, Side::Theirs];
-const DUTIES: [RuleRole; 3] = [RuleRole::Player, RuleRole::Keeper, RuleRole::Kicker];
+const ROLES: [RuleRole; 3] = [RuleRole::Player, RuleRole::Keeper, RuleRole::Kicker];
 
 fn phases() -> impl Iterator<Item = Phase<Side>> {
     let with = SIDES.into_iter().flat_map(|side| {
@@ -47,7 +47,7 @@ fn on_stop_a_robots_side_is_half_a_metre_from_the_ball() {
 }
 
 #[test]
-fn on_stop_and_at_free_kicks_attackers_are_two_tenths_from_the_area_and_in_play_out_of_it() {
+fn attackers_keep_20_cm_off_the_area_on_stop_and_out_of_it_in_play() {
     let field = League::DivisionB.field();
     // The area starts at x = 3.495, its line's outer edge; with the body's 0.09: 3.205 and 3.405.
     let at = |phase, x| why(&field, phase, RuleRole::Player, (x, 0.0));
@@ -146,7 +146,7 @@ fn a_penalty_that_is_in_play_frees_the_keeper() {
 }
 
 #[test]
-fn who_does_not_place_keeps_out_of_the_stadium() {
+fn robots_that_do_not_place_keep_out_of_the_stadium() {
     let field = League::DivisionB.field();
     // Ball at 0, target at (2, 0).
     let theirs = |x, y| why(&field, Phase::BallPlacement(Side::Theirs), RuleRole::Player, (x, y));
@@ -177,7 +177,7 @@ fn no_situation_has_more_regions_than_the_list_holds() {
     for league in [League::Ssl2013, League::DivisionB] {
         let field = &league.field();
         for phase in phases() {
-            for rule_role in DUTIES {
+            for rule_role in ROLES {
                 for own in [GoalEnd::Negative, GoalEnd::Positive] {
                     let s = Situation { field, own, phase, rule_role, ball, placement, ball_in_play: false };
                     // `List::add` asserts in tests; here: capacity is left.
@@ -197,7 +197,7 @@ fn both_ends_are_mirror_images() {
     for (x, y) in grid {
         let at = Point::new(x, y);
         for phase in phases() {
-            for rule_role in DUTIES {
+            for rule_role in ROLES {
                 let mut s = Situation {
                     field,
                     own: GoalEnd::Negative,
@@ -230,7 +230,7 @@ fn halt_stops_stop_slows_and_only_that() {
 }
 
 #[test]
-fn the_ball_is_touched_by_who_may() {
+fn only_permitted_robots_touch_the_ball() {
     let field = &League::DivisionB.field();
     let touch = |phase, rule_role, x: f32| {
         let (own, ball, placement) = (GoalEnd::Negative, None, None);
@@ -238,7 +238,7 @@ fn the_ball_is_touched_by_who_may() {
         may_touch_ball(&s, Point::new(x, 0.0))
     };
     for phase in phases() {
-        for rule_role in DUTIES {
+        for rule_role in ROLES {
             let may = match phase {
                 Phase::Run => true,
                 Phase::Penalty(Side::Theirs) => rule_role == RuleRole::Keeper,
@@ -262,7 +262,7 @@ fn the_ball_is_touched_by_who_may() {
 }
 
 #[test]
-fn what_keep_out_forbids_is_what_the_referee_whistles() {
+fn keep_out_forbids_the_places_that_the_referee_punishes() {
     use crate::legality::{InArea, in_area, interferes, too_close_to_area, too_close_to_ball};
     let field = &League::DivisionB.field();
     let (ball, target) = (Point::new(1.03, -0.52), Point::new(-2.01, 1.47));

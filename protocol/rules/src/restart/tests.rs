@@ -47,7 +47,7 @@ fn the_nearest_valid_spot_is_straight_in_front_beside_or_in_the_notch() {
 
 #[test]
 fn no_place_on_a_grid_is_nearer_than_the_spot_found() {
-    for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
+    for league in League::ON_WHEELS {
         let (field, limits) = (league.field(), league.limits().unwrap());
         let grid = |step: f32, over: f32| {
             let (x, y) = (field.length * 0.5 + over, field.width * 0.5 + over);
@@ -73,7 +73,7 @@ fn a_ball_out_comes_back_at_its_throw_in_goal_kick_or_corner() {
     let (field, limits) = b();
     let out = |line, x, y, own| {
         let crossing = Crossing { line, at: Point::new(x, y) };
-        let after = after_out(&field, &limits, crossing, own, Some(Point::new(0.5, 0.0)), false);
+        let after = after_out(&field, &limits, crossing, own, Some(Point::new(0.5, 0.0)));
         (after.kind, after.spot)
     };
     assert_eq!(
@@ -96,9 +96,9 @@ fn a_ball_out_comes_back_at_its_throw_in_goal_kick_or_corner() {
 #[test]
 fn a_kick_from_the_own_half_over_their_line_is_aimless_in_division_b_only() {
     let crossing = Crossing { line: BoundaryLine::Goal(P), at: Point::new(4.5, 2.0) };
-    let kind = |league: League, from: f32, kickoff| {
+    let kind = |league: League, from: f32, kickoff: bool| {
         let (field, limits) = (league.field(), league.limits().unwrap());
-        after_out(&field, &limits, crossing, N, Some(Point::new(from, 1.0)), kickoff)
+        after_out(&field, &limits, crossing, N, (!kickoff).then_some(Point::new(from, 1.0)))
     };
     assert_eq!(kind(League::DivisionB, -0.5, false).kind, OutKind::AimlessKick);
     assert_eq!(kind(League::DivisionB, -0.5, false).spot, Point::new(-0.5, 1.0));
@@ -142,7 +142,7 @@ fn a_ball_that_lies_well_needs_no_placement() {
 
 #[test]
 fn kick_off_places_are_legal_and_apart() {
-    for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
+    for league in League::ON_WHEELS {
         let field = league.field();
         for own in [N, P] {
             for (ours, side) in [(true, Side::Ours), (false, Side::Theirs)] {

@@ -216,7 +216,7 @@ fn a_kick_off_prepared_out_of_halt_is_still_a_kick_off() {
 }
 
 #[test]
-fn who_joins_a_game_after_normal_start_waits_until_the_ball_must_be_in_play() {
+fn after_joining_behind_normal_start_robots_wait_until_the_ball_is_in_play() {
     let mut state = GameState::new();
     assert_eq!(state.phase(), Phase::Halt);
     let received = state.receive(RefereeCommand::NormalStart, 100 * S, None);
@@ -286,7 +286,7 @@ fn stages_are_played_or_breaks_or_before() {
 }
 
 #[test]
-fn whatever_is_said_no_one_starts_from_a_standstill_within_two_seconds_without_stop() {
+fn no_commands_start_robots_from_halt_within_two_seconds_without_stop() {
     let mut bits = 0x9E37_79B9_7F4A_7C15_u64;
     let mut random = move |below: u64| {
         bits ^= bits << 13;

@@ -18,9 +18,9 @@ messages! {
     pub struct ControllerReply {
         /// Accepted or not, [`StatusCode`].
         status_code: Option<i32> [enumeration = "StatusCode", optional] = 1;
-        /// Why it was not accepted, as text.
+        /// Reason of a refusal, as text.
         reason: Option<String> [string, optional] = 2;
-        /// What the next signature must be over.
+        /// Token that the next signature must be over.
         next_token: Option<String> [string, optional] = 3;
         /// Was the signature checked? [`Verification`].
         verification: Option<i32> [enumeration = "Verification", optional] = 4;
@@ -37,7 +37,7 @@ pub enum StatusCode {
     Rejected = 2,
 }
 
-/// Whether the sender's signature was checked.
+/// Result of the check of the sender's signature.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -64,7 +64,7 @@ messages! {
         team_name: String [string, required] = 1;
         /// Proof, where the controller has the team's key.
         signature: Option<Signature> [message, optional] = 2;
-        /// Which side, where both teams have one name, [`Team`].
+        /// Side, where both teams have one name, [`Team`].
         team: Option<i32> [enumeration = "Team", optional] = 3;
     }
 }
@@ -98,7 +98,7 @@ pub enum TeamRequest {
 }
 
 messages! {
-    /// What a team receives.
+    /// Message from the game controller to a team.
     #[derive(Clone, PartialEq, Message)]
     pub struct ControllerToTeam {
         /// The answer to its last message.

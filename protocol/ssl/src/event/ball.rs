@@ -9,24 +9,24 @@ messages! {
     /// The ball left the field.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BallLeftField {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that touched it last.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where it crossed the line, m.
+        /// Point at which the ball crossed the line, m.
         location: Option<Vector2> [message, optional] = 3;
     }
 
     /// The ball was kicked over the opponent's goal line from the own half.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct AimlessKick {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// Shell number of the robot that touched it last.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where it crossed the line, m.
+        /// Point at which the ball crossed the line, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// Where it was kicked, m.
+        /// Point of the kick, m.
         kick_location: Option<Vector2> [message, optional] = 4;
     }
 
@@ -37,95 +37,95 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// Shell number of the robot that kicked.
         kicking_bot: Option<u32> [uint32, optional] = 2;
-        /// Where it crossed the line, m.
+        /// Point at which the ball crossed the line, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// Where it was kicked, m.
+        /// Point of the kick, m.
         kick_location: Option<Vector2> [message, optional] = 4;
-        /// Its greatest height between kick and goal, m.
+        /// Greatest height of the ball between kick and goal, m.
         max_ball_height: Option<f32> [float, optional] = 5;
         /// The team that kicked: not `by_team` where it is an own goal, [`Team`].
         kicking_team: Option<i32> [enumeration = "Team", optional] = 6;
         /// Robots `by_team` had on the field.
         num_robots_by_team: Option<u32> [uint32, optional] = 7;
-        /// When `by_team` touched it last, µs, Unix time.
+        /// Time of the last touch by `by_team`, µs, Unix time.
         last_touch_by_team: Option<u64> [uint64, optional] = 8;
-        /// Why it counts or does not.
+        /// Reason why it counts or does not.
         message: Option<String> [string, optional] = 9;
     }
 
     /// A goal straight from an indirect free kick (deprecated).
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct IndirectGoal {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// Shell number of the robot that kicked.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where it crossed the line, m.
+        /// Point at which the ball crossed the line, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// Where it was kicked, m.
+        /// Point of the kick, m.
         kick_location: Option<Vector2> [message, optional] = 4;
     }
 
     /// A goal by a ball that was too high (deprecated).
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct ChippedGoal {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// Shell number of the robot that kicked.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where it crossed the line, m.
+        /// Point at which the ball crossed the line, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// Where it was kicked, m.
+        /// Point of the kick, m.
         kick_location: Option<Vector2> [message, optional] = 4;
-        /// Its greatest height, m.
+        /// Greatest height of the ball, m.
         max_ball_height: Option<f32> [float, optional] = 5;
     }
 
     /// A kick over the speed limit.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotKickedBallTooFast {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where it was kicked, m.
+        /// Point of the kick, m.
         location: Option<Vector2> [message, optional] = 3;
         /// The ball's speed after the kick, in space, m/s.
         initial_ball_speed: Option<f32> [float, optional] = 4;
-        /// Whether the ball flew after the kick.
+        /// True if the ball flew after the kick.
         chipped: Option<bool> [bool, optional] = 5;
     }
 
     /// A dribble over the limit.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotDribbledBallTooFar {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where the contact began, m.
+        /// Start of the contact, m.
         start: Option<Vector2> [message, optional] = 3;
-        /// Where the distance was over the limit, m.
+        /// Point at which the distance was over the limit, m.
         end: Option<Vector2> [message, optional] = 4;
     }
 
     /// An attacker touched the ball in the opponent's defence area.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct AttackerTouchedBallInDefenseArea {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
         /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// How deep it was in, m.
+        /// Depth inside the area, m.
         distance: Option<f32> [float, optional] = 4;
     }
 
     /// The kicker touched the ball again before another robot did.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct AttackerDoubleTouchedBall {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
@@ -136,7 +136,7 @@ messages! {
     /// A robot held the ball.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotHeldBallDeliberately {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
@@ -149,7 +149,7 @@ messages! {
     /// The keeper held the ball in its defence area.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct KeeperHeldBall {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// Position of the ball, m.
         location: Option<Vector2> [message, optional] = 2;
@@ -160,18 +160,18 @@ messages! {
     /// The kick was not taken in time (deprecated).
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct KickTimeout {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// Where the ball lay, m.
+        /// Position of the ball, m.
         location: Option<Vector2> [message, optional] = 2;
-        /// How long was waited, s.
+        /// Time that was waited, s.
         time: Option<f32> [float, optional] = 3;
     }
 
-    /// Nobody got the ball going.
+    /// Play in which neither team got the ball going.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct NoProgressInGame {
-        /// Where the ball lay, m.
+        /// Position of the ball, m.
         location: Option<Vector2> [message, optional] = 1;
         /// Time that was waited, s.
         time: Option<f32> [float, optional] = 2;
@@ -180,7 +180,7 @@ messages! {
     /// The ball was not placed in time.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct PlacementFailed {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// Ball to its target, m.
         remaining_distance: Option<f32> [float, optional] = 2;
@@ -191,9 +191,9 @@ messages! {
     /// The ball was placed.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct PlacementSucceeded {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// How long it took, s.
+        /// Time that it took, s.
         time_taken: Option<f32> [float, optional] = 2;
         /// Ball to its target, m.
         precision: Option<f32> [float, optional] = 3;
@@ -204,27 +204,27 @@ messages! {
     /// Both teams were ready (deprecated).
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct Prepared {
-        /// How long it took, s.
+        /// Time that it took, s.
         time_taken: Option<f32> [float, optional] = 1;
     }
 
     /// A ball flew over the boundary's wall.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BoundaryCrossing {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// Where it crossed, m.
+        /// Point of the crossing, m.
         location: Option<Vector2> [message, optional] = 2;
     }
 
     /// The penalty kick brought no goal.
     #[derive(Clone, PartialEq, Message)]
     pub struct PenaltyKickFailed {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// Where the ball was, m.
+        /// Position of the ball, m.
         location: Option<Vector2> [message, optional] = 2;
-        /// Why it failed, as text.
+        /// Reason of the failure, as text.
         reason: Option<String> [string, optional] = 3;
     }
 }

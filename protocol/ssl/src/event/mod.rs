@@ -19,7 +19,7 @@ pub struct GameEvent {
     /// Kind of event, [`GameEventType`]; its numbers are not the field numbers of [`Event`].
     #[prost(enumeration = "GameEventType", optional, tag = "40")]
     pub r#type: Option<i32>,
-    /// Its sources: names of automatic referees, or `UI`.
+    /// Sources of the event: names of automatic referees, or `UI`.
     #[prost(string, repeated, tag = "41")]
     pub origin: Vec<String>,
     /// Time of its creation, µs, Unix time.

@@ -8,7 +8,7 @@ messages! {
     /// A robot was too fast in STOP.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotTooFastInStop {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
@@ -21,7 +21,7 @@ messages! {
     /// An opponent was too close to the ball at a free kick.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct DefenderTooCloseToKickPoint {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
@@ -51,7 +51,7 @@ messages! {
     /// Two robots crashed; the faster one is at fault.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotCrashUnique {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The faster one, of `by_team`.
         violator: Option<u32> [uint32, optional] = 2;
@@ -70,9 +70,9 @@ messages! {
     /// A robot pushed another.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotPushedBot {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// Who pushed, of `by_team`.
+        /// Robot of `by_team` that pushed.
         violator: Option<u32> [uint32, optional] = 2;
         /// Robot that was pushed, of the other team.
         victim: Option<u32> [uint32, optional] = 3;
@@ -85,33 +85,33 @@ messages! {
     /// A robot fell over.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotTippedOver {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
         /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// Where the ball was, m.
+        /// Position of the ball, m.
         ball_location: Option<Vector2> [message, optional] = 4;
     }
 
     /// A robot lost parts.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotDroppedParts {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
-        /// Where the parts were dropped, m.
+        /// Position of the dropped parts, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// Where the ball was, m.
+        /// Position of the ball, m.
         ball_location: Option<Vector2> [message, optional] = 4;
     }
 
     /// A defender other than the keeper touched the ball, entirely in its own defence area.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct DefenderInDefenseArea {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
@@ -124,22 +124,22 @@ messages! {
     /// The same, partly in the area (deprecated).
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct DefenderInDefenseAreaPartially {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
         /// Position of the robot, m.
         location: Option<Vector2> [message, optional] = 3;
-        /// How deep it was in, m.
+        /// Depth inside the area, m.
         distance: Option<f32> [float, optional] = 4;
-        /// Where the ball was, m.
+        /// Position of the ball, m.
         ball_location: Option<Vector2> [message, optional] = 5;
     }
 
     /// An attacker touched an opponent in the opponent's defence area (deprecated).
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct AttackerTouchedOpponentInDefenseArea {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
@@ -152,7 +152,7 @@ messages! {
     /// An attacker was too close to the opponent's defence area at a restart.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct AttackerTooCloseToDefenseArea {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
@@ -160,14 +160,14 @@ messages! {
         location: Option<Vector2> [message, optional] = 3;
         /// Robot to the area, m.
         distance: Option<f32> [float, optional] = 4;
-        /// Where the ball was, m.
+        /// Position of the ball, m.
         ball_location: Option<Vector2> [message, optional] = 5;
     }
 
     /// A robot was too close to the line between ball and target.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotInterferedPlacement {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The robot that did it.
         by_bot: Option<u32> [uint32, optional] = 2;
@@ -178,13 +178,13 @@ messages! {
     /// A team had too many robots on the field.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct TooManyRobots {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// How many it may have.
+        /// Number of robots that the team may have.
         num_robots_allowed: Option<i32> [int32, optional] = 2;
-        /// How many it had.
+        /// Number of robots that the team had.
         num_robots_on_field: Option<i32> [int32, optional] = 3;
-        /// Where the ball was, m.
+        /// Position of the ball, m.
         ball_location: Option<Vector2> [message, optional] = 4;
     }
 }

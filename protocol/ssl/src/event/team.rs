@@ -9,14 +9,14 @@ messages! {
     /// A team got several yellow cards.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct MultipleCards {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
     }
 
     /// A team committed several fouls.
     #[derive(Clone, PartialEq, Message)]
     pub struct MultipleFouls {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The fouls that were counted together.
         caused_game_events: Vec<GameEvent> [message, repeated] = 2;
@@ -25,53 +25,53 @@ messages! {
     /// A team failed to place several times (deprecated).
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct MultiplePlacementFailures {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
     }
 
     /// A human saw minor unsporting behaviour.
     #[derive(Clone, PartialEq, Message)]
     pub struct UnsportingBehaviorMinor {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// What was seen, as text.
+        /// Observation of the referees, as text.
         reason: String [string, required] = 2;
     }
 
     /// A human saw major unsporting behaviour.
     #[derive(Clone, PartialEq, Message)]
     pub struct UnsportingBehaviorMajor {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
-        /// What was seen, as text.
+        /// Observation of the referees, as text.
         reason: String [string, required] = 2;
     }
 
     /// A team wants to substitute a robot.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BotSubstitution {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
     }
 
     /// A team substituted more often than is free.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct ExcessiveBotSubstitution {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
     }
 
     /// A team challenges a decision.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct ChallengeFlag {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
     }
 
     /// A challenge was decided.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct ChallengeFlagHandled {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// Was the challenge right?
         accepted: bool [bool, required] = 2;
@@ -80,7 +80,7 @@ messages! {
     /// A team stopped the game in an emergency.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct EmergencyStop {
-        /// Who did it, [`Team`].
+        /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
     }
 }

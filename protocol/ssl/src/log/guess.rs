@@ -67,7 +67,7 @@ fn is(fields: &[Field<'_>], known: &Known, required: &[u32]) -> bool {
         && required.iter().all(|number| fields.iter().any(|field| field.number == *number))
 }
 
-/// Whether a field of the wrapper is one of vision's.
+/// Returns whether a field of the wrapper is one of vision's.
 fn vision_part(field: &Field<'_>) -> bool {
     match (field.number, field.value) {
         (1, Value::Bytes(frame)) => {
@@ -93,7 +93,7 @@ mod tests {
     use crate::vision::{DetectionFrame, FieldLineSegment, GeometryData, GeometryFieldSize};
 
     #[test]
-    fn each_message_is_distinguished_from_the_others() {
+    fn each_message_kind_is_recognised_by_its_bytes() {
         let detection =
             vision::WrapperPacket { detection: Some(DetectionFrame::default()), ..Default::default() };
         assert_eq!(guess(&detection.encode_to_vec()), Some(MessageKind::Vision2014));
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_none_of_them_is_none() {
+    fn other_bytes_are_no_message() {
         assert_eq!(guess(b""), None);
         assert_eq!(guess(b"SSL_LOG_FILE"), None);
         assert_eq!(guess(&[0xff; 40]), None);

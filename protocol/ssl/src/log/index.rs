@@ -11,7 +11,7 @@ use super::{FILE_HEADER, MESSAGE_HEADER, MessageKind};
 const MARK: &[u8; 7] = b"INDEXED";
 
 /// Bytes after the offsets: the distance and the mark.
-const TAIL: usize = 8 + MARK.len();
+const TAIL_LEN: usize = 8 + MARK.len();
 
 /// Content of a file's end.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,18 +28,18 @@ impl Index {
     /// Searches an index at the end. Allocates no more bytes than the file has.
     pub fn read(file: &mut (impl Read + Seek)) -> io::Result<Self> {
         let length = file.seek(SeekFrom::End(0))?;
-        if length < (FILE_HEADER + MESSAGE_HEADER + TAIL) as u64 {
+        if length < (FILE_HEADER + MESSAGE_HEADER + TAIL_LEN) as u64 {
             return Ok(Self::Absent);
         }
-        file.seek(SeekFrom::End(-(TAIL as i64)))?;
-        let mut tail = [0; TAIL];
+        file.seek(SeekFrom::End(-(TAIL_LEN as i64)))?;
+        let mut tail = [0; TAIL_LEN];
         read_all(file, &mut tail)?;
         let [b0, b1, b2, b3, b4, b5, b6, b7, mark @ ..] = tail;
         if mark != *MARK {
             return Ok(Self::Absent);
         }
         let back = u64::from_be_bytes([b0, b1, b2, b3, b4, b5, b6, b7]);
-        let least = (MESSAGE_HEADER + TAIL) as u64;
+        let least = (MESSAGE_HEADER + TAIL_LEN) as u64;
         let Some(start) = length.checked_sub(back).filter(|_| back >= least) else {
             return Ok(Self::Broken("it begins outside the file"));
         };
@@ -73,9 +73,9 @@ impl Index {
 
     /// The index's payload for messages that start at `offsets`.
     pub(super) fn payload(offsets: &[u64]) -> Vec<u8> {
-        let mut payload = Vec::with_capacity(offsets.len() * 8 + TAIL);
+        let mut payload = Vec::with_capacity(offsets.len() * 8 + TAIL_LEN);
         payload.extend(offsets.iter().flat_map(|offset| offset.to_be_bytes()));
-        let back = (MESSAGE_HEADER + offsets.len() * 8 + TAIL) as u64;
+        let back = (MESSAGE_HEADER + offsets.len() * 8 + TAIL_LEN) as u64;
         payload.extend(back.to_be_bytes());
         payload.extend(MARK);
         payload

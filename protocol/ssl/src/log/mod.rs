@@ -111,7 +111,7 @@ impl std::fmt::Display for MessageKind {
 /// One message of a log file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Record {
-    /// When the recorder received it, ns, Unix time. Neighbours may step back half a millisecond (README,
+    /// Time of reception by the recorder, ns, Unix time. Neighbours may step back half a millisecond (README,
     /// trap 6).
     pub timestamp_ns: i64,
     /// Kind of the message.

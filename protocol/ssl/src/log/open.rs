@@ -30,11 +30,12 @@ impl Read for Source {
 /// Method by which [`open_at`] found its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// By the index: a few reads.
+    /// Found by the index: a few reads.
     Index,
-    /// By all headers before it, without their payloads; with why the index could not be used.
+    /// Found by all headers before it, without their payloads; with the reason why the index could not be
+    /// used.
     Headers(Option<&'static str>),
-    /// By reading all before it: the file is gzipped.
+    /// Found by reading all before it: the file is gzipped.
     Unzipped,
 }
 
@@ -82,26 +83,31 @@ fn source(path: &Path) -> Result<Source, LogError> {
     Ok(if gzip { Source::Gzip(Box::new(MultiGzDecoder::new(file))) } else { Source::Plain(file) })
 }
 
+/// Time of a message of the index, ns, and whether it ends before the next one begins.
+fn message_at(file: &mut BufReader<File>, offsets: &[u64], at: usize) -> io::Result<(i64, bool)> {
+    let (time, size) = header_at(file, offsets[at])?;
+    let length = u64::try_from(size).unwrap_or(u64::MAX).saturating_add(MESSAGE_HEADER as u64);
+    // The next message may be farther on: blanks between them need no offset.
+    let next = offsets.get(at + 1);
+    Ok((time, next.is_none_or(|next| offsets[at].saturating_add(length) <= *next)))
+}
+
 /// Bisects the index; `None` where an offset leads outside the file's messages.
 fn search(file: &mut BufReader<File>, offsets: &[u64], timestamp_ns: i64) -> io::Result<Option<u64>> {
     let mut low = 0;
     let mut high = offsets.len();
     let mut plausible = true;
-    let mut reaches = |at: usize, file: &mut BufReader<File>| -> io::Result<bool> {
-        let next = offsets.get(at + 1);
-        let (time, size) = header_at(file, offsets[at])?;
-        let length = u64::try_from(size).unwrap_or(u64::MAX).saturating_add(MESSAGE_HEADER as u64);
-        // The next message may be farther on: blanks between them need no offset.
-        plausible &= next.is_none_or(|next| offsets[at].saturating_add(length) <= *next);
-        Ok(time >= timestamp_ns)
-    };
     while low < high {
         let middle = usize::midpoint(low, high);
-        if reaches(middle, file)? { high = middle } else { low = middle + 1 }
+        let (time, is_plausible) = message_at(file, offsets, middle)?;
+        plausible &= is_plausible;
+        if time >= timestamp_ns { high = middle } else { low = middle + 1 }
     }
     let mut found = low;
     for earlier in (low.saturating_sub(BACK_STEP_MESSAGES)..low).rev() {
-        if reaches(earlier, file)? {
+        let (time, is_plausible) = message_at(file, offsets, earlier)?;
+        plausible &= is_plausible;
+        if time >= timestamp_ns {
             found = earlier;
         }
     }

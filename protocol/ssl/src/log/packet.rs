@@ -50,29 +50,20 @@ impl Packet {
 }
 
 /// A payload without a message.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PacketError {
-    /// It is not of its declared type.
+    /// The payload is not of its declared type.
+    #[error("{kind}: {error}")]
     Broken {
         /// The type that the log declares.
         kind: MessageKind,
         /// Error of the decoder.
         error: prost::DecodeError,
     },
-    /// Its type is not one of the league's.
+    /// The type is not one of the league's.
+    #[error("message type {0} is not one of the league's (0–6)")]
     KindNotKnown(i32),
-    /// Its type is `Unknown`, and it is none of the known messages.
+    /// The type is `Unknown`, and the payload is none of the known messages.
+    #[error("neither vision nor referee nor tracker")]
     NothingKnown,
 }
-
-impl std::fmt::Display for PacketError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Broken { kind, error } => write!(f, "{kind}: {error}"),
-            Self::KindNotKnown(number) => write!(f, "message type {number} is not one of the league's (0–6)"),
-            Self::NothingKnown => write!(f, "neither vision nor referee nor tracker"),
-        }
-    }
-}
-
-impl std::error::Error for PacketError {}

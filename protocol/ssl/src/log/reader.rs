@@ -35,7 +35,7 @@ pub struct LogCounts {
     pub largest_back_step_ns: u64,
 }
 
-/// How a file ends. Positions and sizes are bytes of the unzipped file.
+/// End of a file. Positions and sizes are bytes of the unzipped file.
 #[derive(Debug)]
 pub enum LogEnd {
     /// The file ends after a whole message.
@@ -64,7 +64,7 @@ pub enum LogEnd {
 }
 
 impl LogEnd {
-    /// Whether the file ended as it should.
+    /// Returns whether the file ended as it should.
     pub const fn is_whole(&self) -> bool {
         matches!(self, Self::Whole)
     }
@@ -119,7 +119,7 @@ impl<R: Read> LogReader<R> {
         Self { source, at, ahead: None, last_ns: None, counts: LogCounts::default(), end: None }
     }
 
-    /// How the file ended; `None` until the iterator gave its last message.
+    /// End of the file; `None` until the iterator gave its last message.
     pub fn end(&self) -> Option<&LogEnd> {
         self.end.as_ref()
     }
@@ -247,5 +247,5 @@ fn broken_off(at: u64, bytes: u64, error: io::Error) -> LogEnd {
     }
 }
 
-/// How Qt writes the string `SSL_LOG_FILE`: 24 bytes of UTF-16.
+/// Start of the string `SSL_LOG_FILE` as Qt writes it: 24 bytes of UTF-16.
 const LEGACY_QT: [u8; 12] = [0, 0, 0, 24, 0, b'S', 0, b'S', 0, b'L', 0, b'_'];

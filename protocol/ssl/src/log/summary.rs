@@ -9,8 +9,8 @@ use super::{LogCounts, LogReader, MessageKind, Packet, PacketError};
 /// Statistics of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
-    /// By the kind that the file names; a message of kind `Unknown` is counted there, even if its kind was
-    /// found.
+    /// Messages by the kind that the file names; a message of kind `Unknown` is counted there, even if its
+    /// kind was found.
     pub kinds: BTreeMap<MessageKind, KindSummary>,
     /// Number of messages of kind `Unknown` whose kind was found.
     pub guessed: u64,
@@ -24,7 +24,7 @@ pub struct Summary {
     pub trackers: BTreeMap<String, String>,
     /// The first message that could not be decoded: its number among all, from 0, and why.
     pub first_undecodable: Option<(u64, PacketError)>,
-    /// How the file ended, as text; empty if whole.
+    /// Damage at the end of the file, as text; empty if whole.
     pub damage: String,
 }
 

@@ -46,7 +46,7 @@ impl<W: Write> LogWriter<W> {
         Self::begin(sink, None)
     }
 
-    /// With an index at the end; needs 8 bytes of memory a message.
+    /// A log with an index at the end; needs 8 bytes of memory a message.
     pub fn indexed(sink: W) -> io::Result<Self> {
         Self::begin(sink, Some(Vec::new()))
     }
@@ -60,9 +60,9 @@ impl<W: Write> LogWriter<W> {
     /// Writes a message received at `timestamp_ns` (ns, Unix time).
     pub fn write(&mut self, timestamp_ns: i64, kind: MessageKind, payload: &[u8]) -> io::Result<()> {
         if payload.len() > PAYLOAD_MAX {
-            let description =
+            let message =
                 format!("a message of {} bytes; a datagram has at most {PAYLOAD_MAX}", payload.len());
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, description));
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
         }
         if let Some(offsets) = &mut self.offsets {
             offsets.push(self.at);

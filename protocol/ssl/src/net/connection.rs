@@ -34,7 +34,7 @@ impl Connection {
         // Messages are small and wait for answers.
         stream.set_nodelay(true).map_err(system(peer))?;
         stream.set_write_timeout(Some(WRITE_WAIT)).map_err(system(peer))?;
-        Ok(Self { stream, peer, reader: FrameReader::new(MESSAGE_MAX), chunk: vec![0; CHUNK].into() })
+        Ok(Self { stream, peer, reader: FrameReader::new(MESSAGE_MAX), chunk: vec![0; READ_LEN_MAX].into() })
     }
 
     /// Address of the peer.
@@ -98,4 +98,4 @@ const SHORTEST_WAIT: Duration = Duration::from_millis(1);
 const WRITE_WAIT: Duration = Duration::from_secs(1);
 
 /// Bytes read at once; a reply has about a hundred.
-const CHUNK: usize = 4096;
+const READ_LEN_MAX: usize = 4096;

@@ -1,29 +1,42 @@
 //! `error`: network errors, and how to fix them.
 
-use std::fmt;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 
+use super::addresses::{AUTOREF_PORT, TEAM_PORT};
 use crate::stream::StreamError;
 
-/// Why a socket cannot be opened or used.
-#[derive(Debug)]
+/// Reason why a socket cannot be opened or used.
+#[derive(Debug, thiserror::Error)]
 pub enum NetError {
     /// Another program has bound the port and does not share it.
+    #[error(
+        "UDP port {port} is taken by a program {}; find it with `ss -ulpn 'sport = :{port}'` and end it, or take another port",
+        if *shared { "that does not share it (SO_REUSEADDR and SO_REUSEPORT)" } else { "already" },
+        port = address.port()
+    )]
     Busy {
         /// Address of the port.
         address: SocketAddr,
-        /// Whether the port was to be shared (multicast), so that the other program is at fault.
+        /// True where the port was to be shared (multicast), so that the other program is at fault.
         shared: bool,
     },
     /// No interface of that name or address.
+    #[error(
+        "no network interface `{requested}` that is up and has IPv4; there are: {}",
+        if there_are.is_empty() { "none".to_owned() } else { there_are.join(", ") }
+    )]
     NoInterface {
         /// Name that was requested.
-        wanted: String,
+        requested: String,
         /// Existing interfaces, `name (address)`.
         there_are: Vec<String>,
     },
     /// No interface could join the group.
+    #[error(
+        "no interface could join {group}{}; is a network up? On this machine alone: `{LOOPBACK_HINT}`",
+        tried.iter().map(|(name, error)| format!("; {name}: {error}")).collect::<String>()
+    )]
     NotJoined {
         /// Address of the group.
         group: Ipv4Addr,
@@ -31,8 +44,10 @@ pub enum NetError {
         tried: Vec<(String, io::Error)>,
     },
     /// The group's address is not one: multicast is 224.0.0.0 to 239.255.255.255.
+    #[error("{0} is no multicast address; vision is 224.5.23.2, the referee 224.5.23.1")]
     NotMulticast(Ipv4Addr),
     /// The machine has no route to that address.
+    #[error("no route to {to}{}; {}", by.map_or_else(String::new, |by| format!(" by {by}")), route_hint(to))]
     NoRoute {
         /// Destination of the datagram.
         to: SocketAddr,
@@ -40,18 +55,28 @@ pub enum NetError {
         by: Option<Ipv4Addr>,
     },
     /// A datagram larger than UDP carries.
+    #[error("a datagram of {bytes} bytes; UDP carries {}", crate::stream::DATAGRAM_MAX)]
     TooLarge {
         /// Length of the datagram, bytes.
         bytes: usize,
     },
     /// The TCP connection was not accepted.
+    #[error(
+        "nobody answers at {to} ({error}); is the game controller running? Teams: port {TEAM_PORT}, automatic \
+         referees: {AUTOREF_PORT}"
+    )]
     NotConnected {
         /// Address that was to be connected.
         to: SocketAddr,
         /// Cause of the failure.
+        #[source]
         error: io::Error,
     },
     /// The peer closed the TCP connection.
+    #[error(
+        "{by} closed the connection{}; connect again",
+        if *pending == 0 { String::new() } else { format!(" within a message, after {pending} bytes") }
+    )]
     Closed {
         /// Address of the peer.
         by: SocketAddr,
@@ -59,26 +84,32 @@ pub enum NetError {
         pending: usize,
     },
     /// Bytes received by TCP are no messages of the league's.
+    #[error("{from}: {error}")]
     NotFramed {
         /// Address of the sender.
         from: SocketAddr,
         /// Cause of the failure.
+        #[source]
         error: StreamError,
     },
     /// A message received by TCP is not of the expected type.
+    #[error("{from}: {error}; is it the port for this kind of program?")]
     NotDecoded {
         /// Address of the sender.
         from: SocketAddr,
         /// Cause of the failure.
+        #[source]
         error: prost::DecodeError,
     },
     /// Any other error of the system.
+    #[error("cannot {doing} {address}: {error}")]
     System {
         /// The operation that failed, as a verb.
         doing: &'static str,
         /// Address that it concerned.
         address: SocketAddr,
         /// Cause of the failure.
+        #[source]
         error: io::Error,
     },
 }
@@ -88,7 +119,7 @@ impl NetError {
         match error.kind() {
             io::ErrorKind::AddrInUse => Self::Busy { address, shared },
             io::ErrorKind::AddrNotAvailable => Self::NoInterface {
-                wanted: address.ip().to_string(),
+                requested: address.ip().to_string(),
                 there_are: super::interfaces().unwrap_or_default().iter().map(ToString::to_string).collect(),
             },
             _ => Self::System { doing: "bind", address, error },
@@ -113,77 +144,6 @@ impl NetError {
     }
 }
 
-impl fmt::Display for NetError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Busy { address, shared } => {
-                let port = address.port();
-                write!(f, "UDP port {port} is taken by a program ")?;
-                if *shared {
-                    write!(f, "that does not share it (SO_REUSEADDR and SO_REUSEPORT); ")?;
-                } else {
-                    write!(f, "already; ")?;
-                }
-                write!(f, "find it with `ss -ulpn 'sport = :{port}'` and end it, or take another port")
-            }
-            Self::NoInterface { wanted, there_are } => write!(
-                f,
-                "no network interface `{wanted}` that is up and has IPv4; there are: {}",
-                if there_are.is_empty() { "none".to_owned() } else { there_are.join(", ") }
-            ),
-            Self::NotJoined { group, tried } => {
-                write!(f, "no interface could join {group}")?;
-                for (name, error) in tried {
-                    write!(f, "; {name}: {error}")?;
-                }
-                write!(f, "; is a network up? On this machine alone: `{LOOPBACK_HINT}`")
-            }
-            Self::NotMulticast(group) => {
-                write!(f, "{group} is no multicast address; vision is 224.5.23.2, the referee 224.5.23.1")
-            }
-            Self::NoRoute { to, by } => {
-                write!(f, "no route to {to}")?;
-                if let Some(by) = by {
-                    write!(f, " by {by}")?;
-                }
-                if is_multicast(to) {
-                    write!(f, "; choose an interface, or on this machine alone: `{LOOPBACK_HINT}`")
-                } else {
-                    write!(f, "; is the network up, and the address right?")
-                }
-            }
-            Self::TooLarge { bytes } => {
-                write!(f, "a datagram of {bytes} bytes; UDP carries {}", crate::stream::DATAGRAM_MAX)
-            }
-            Self::NotConnected { to, error } => write!(
-                f,
-                "nobody answers at {to} ({error}); is the game controller running? Teams: port 10008, automatic referees: \
-                 10007"
-            ),
-            Self::Closed { by, pending: 0 } => write!(f, "{by} closed the connection; connect again"),
-            Self::Closed { by, pending } => {
-                write!(f, "{by} closed the connection within a message, after {pending} bytes; connect again")
-            }
-            Self::NotFramed { from, error } => write!(f, "{from}: {error}"),
-            Self::NotDecoded { from, error } => {
-                write!(f, "{from}: {error}; is it the port for this kind of program?")
-            }
-            Self::System { doing, address, error } => write!(f, "cannot {doing} {address}: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for NetError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::System { error, .. } | Self::NotConnected { error, .. } => Some(error),
-            Self::NotFramed { error, .. } => Some(error),
-            Self::NotDecoded { error, .. } => Some(error),
-            _ => None,
-        }
-    }
-}
-
 /// Gives a machine's loopback what the league's programs need there. Until the next boot.
 pub(super) const LOOPBACK_HINT: &str =
     "sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo";
@@ -192,6 +152,11 @@ pub(super) fn multicast_group(group: SocketAddrV4) -> Result<Ipv4Addr, NetError>
     if group.ip().is_multicast() { Ok(*group.ip()) } else { Err(NetError::NotMulticast(*group.ip())) }
 }
 
-fn is_multicast(address: &SocketAddr) -> bool {
-    address.ip().is_multicast()
+/// Advice where there is no route to an address.
+fn route_hint(to: &SocketAddr) -> String {
+    if to.ip().is_multicast() {
+        format!("choose an interface, or on this machine alone: `{LOOPBACK_HINT}`")
+    } else {
+        "is the network up, and the address right?".to_owned()
+    }
 }

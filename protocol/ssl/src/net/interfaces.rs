@@ -8,14 +8,14 @@ use super::NetError;
 /// An interface that is up and has IPv4.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Interface {
-    /// Its name in the system: `lo`, `eth0`.
+    /// Name in the system: `lo`, `eth0`.
     pub name: String,
-    /// Its first IPv4 address.
+    /// First IPv4 address of the interface.
     pub address: Ipv4Addr,
 }
 
 impl Interface {
-    /// Whether it leads to this machine only.
+    /// Returns whether it leads to this machine only.
     pub const fn is_loopback(&self) -> bool {
         self.address.is_loopback()
     }
@@ -43,7 +43,7 @@ impl Interfaces {
         Self::These(vec![Ipv4Addr::LOCALHOST.to_string()])
     }
 
-    /// The interfaces chosen.
+    /// Resolves the choice against the machine's interfaces.
     pub(super) fn choose(&self) -> Result<Vec<Interface>, NetError> {
         let there_are = interfaces().map_err(|error| NetError::System {
             doing: "list the interfaces of",
@@ -52,7 +52,7 @@ impl Interfaces {
         })?;
         match self {
             Self::All => Ok(there_are),
-            Self::These(wanted) => wanted.iter().map(|wanted| find(wanted, &there_are)).collect(),
+            Self::These(requested) => requested.iter().map(|requested| find(requested, &there_are)).collect(),
         }
     }
 }
@@ -71,11 +71,11 @@ pub fn interfaces() -> std::io::Result<Vec<Interface>> {
 }
 
 /// An interface by its name or address.
-pub(super) fn find(wanted: &str, there_are: &[Interface]) -> Result<Interface, NetError> {
-    let address: Option<Ipv4Addr> = wanted.parse().ok();
-    let fits = |interface: &&Interface| interface.name == wanted || Some(interface.address) == address;
+pub(super) fn find(requested: &str, there_are: &[Interface]) -> Result<Interface, NetError> {
+    let address: Option<Ipv4Addr> = requested.parse().ok();
+    let fits = |interface: &&Interface| interface.name == requested || Some(interface.address) == address;
     there_are.iter().find(fits).cloned().ok_or_else(|| NetError::NoInterface {
-        wanted: wanted.to_owned(),
+        requested: requested.to_owned(),
         there_are: there_are.iter().map(ToString::to_string).collect(),
     })
 }

@@ -33,8 +33,6 @@ pub mod addresses {
     pub const VISION: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10006);
     /// The same of a simulator, so that it disturbs no tournament's network (grSim, ER-Force).
     pub const VISION_SIMULATED: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10020);
-    /// Vision until 2014: [`legacy::WrapperPacket`](crate::vision::legacy::WrapperPacket).
-    pub const VISION_LEGACY: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10005);
     /// Packets of the game controller: [`Referee`](crate::referee::Referee).
     pub const REFEREE: SocketAddrV4 = SocketAddrV4::new(REFEREE_GROUP, 10003);
     /// Packets of trackers: [`TrackerWrapperPacket`](crate::tracker::TrackerWrapperPacket).
@@ -51,8 +49,8 @@ pub mod addresses {
     pub const ROBOTS_YELLOW_PORT: u16 = 10302;
     /// grSim's UDP port for [`GrsimPacket`](crate::simulation::GrsimPacket).
     pub const GRSIM_PORT: u16 = 20011;
-    /// Where grSim sends [`RobotsStatus`](crate::simulation::RobotsStatus) of blue.
+    /// UDP port to which grSim sends blue's [`RobotsStatus`](crate::simulation::RobotsStatus).
     pub const GRSIM_BLUE_STATUS_PORT: u16 = 30011;
-    /// Where grSim sends [`RobotsStatus`](crate::simulation::RobotsStatus) of yellow.
+    /// UDP port to which grSim sends yellow's [`RobotsStatus`](crate::simulation::RobotsStatus).
     pub const GRSIM_YELLOW_STATUS_PORT: u16 = 30012;
 }

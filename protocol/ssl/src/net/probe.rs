@@ -13,15 +13,15 @@ use super::{Interfaces, NetError, Receiver, Sender, addresses, interfaces};
 /// Result of a packet sent by loopback.
 #[derive(Debug)]
 pub enum LoopbackProbe {
-    /// It came back: programs on this machine receive each other.
+    /// The probe came back: programs on this machine receive each other.
     Works {
         /// Address by which programs send that let the system choose; not 127.0.0.1: the league's own
         /// programs need this machine's other interface to be received, or the fix.
         league_sends_by: Option<Ipv4Addr>,
     },
-    /// It was sent and did not come back.
+    /// The probe was sent and did not come back.
     Silent,
-    /// It could not be sent, or not be waited for.
+    /// The probe could not be sent, or not be waited for.
     Refused(NetError),
 }
 
@@ -80,7 +80,7 @@ fn send_and_wait(group: Ipv4Addr, wait: Duration) -> Result<bool, NetError> {
     let to = SocketAddrV4::new(group, port);
     let loopback = interfaces().ok().and_then(|all| all.into_iter().find(super::Interface::is_loopback));
     let Some(loopback) = loopback else {
-        return Err(NetError::NoInterface { wanted: "lo".into(), there_are: vec![] });
+        return Err(NetError::NoInterface { requested: "lo".into(), there_are: vec![] });
     };
     let mut receiver = Receiver::join(to, &Interfaces::These(vec![loopback.name.clone()]))?;
     Sender::multicast(to, Some(&loopback.name))?.send(PROBE)?;

@@ -73,8 +73,8 @@ pub struct Sender {
 }
 
 impl Sender {
-    /// To a group: by the interface named, or by the one the system chooses. Programs on this machine receive
-    /// it too.
+    /// A sender to a group, by the interface named, or by the one the system chooses. Programs on this
+    /// machine receive it too.
     ///
     /// One interface only: a program that receives on several would receive every packet several times.
     pub fn multicast(group: SocketAddrV4, by: Option<&str>) -> Result<Self, NetError> {
@@ -130,7 +130,7 @@ impl Port {
         Ok(Self { inbox: Inbox::new(socket, address) })
     }
 
-    /// Its address, with the port assigned.
+    /// Address of the socket, with the port assigned.
     pub const fn address(&self) -> SocketAddr {
         self.inbox.address
     }
@@ -159,7 +159,7 @@ struct Inbox {
 
 impl Inbox {
     fn new(socket: UdpSocket, address: SocketAddr) -> Self {
-        Self { socket, address, buffer: vec![0; BUFFER].into(), waits: None }
+        Self { socket, address, buffer: vec![0; BUFFER_LEN].into(), waits: None }
     }
 
     fn receive(&mut self, wait: Duration) -> Result<Option<Datagram<'_>>, NetError> {
@@ -179,7 +179,7 @@ impl Inbox {
     }
 }
 
-/// Nothing came, a signal came instead, or an earlier answer of ours found no receiver.
+/// Returns whether nothing came, a signal came instead, or an earlier answer of ours found no receiver.
 fn is_silence(error: &io::Error) -> bool {
     use io::ErrorKind::{ConnectionRefused, ConnectionReset, Interrupted, TimedOut, WouldBlock};
     matches!(error.kind(), WouldBlock | TimedOut | Interrupted | ConnectionRefused | ConnectionReset)
@@ -201,7 +201,7 @@ fn share(socket: &Socket) -> io::Result<()> {
 const MULTICAST_TTL: u32 = 32;
 
 /// The largest datagram and a byte, so that truncation is detected.
-const BUFFER: usize = crate::stream::DATAGRAM_MAX + 1;
+const BUFFER_LEN: usize = crate::stream::DATAGRAM_MAX + 1;
 
 /// Bytes of the system's receive buffer: half a second of vision (four cameras, 100 Hz, 2 kB).
 const RECEIVE_BUFFER: usize = 512 * 1024;

@@ -7,7 +7,7 @@
 use prost::Message;
 
 messages! {
-    /// How unlike an ideal camera and radio ER-Force's simulator behaves.
+    /// Deviations of ER-Force's simulator from an ideal camera and radio.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct RealismConfigErForce {
         /// Noise of the ball's place, m (standard deviation).
@@ -22,7 +22,7 @@ messages! {
         enable_invisible_ball: Option<bool> [bool, optional] = 5;
         /// The ball is seen where at least this part of it shows, 0–1.
         ball_visibility_threshold: Option<f32> [float, optional] = 6;
-        /// How far the cameras' views overlap, m.
+        /// Overlap of the cameras' views, m.
         camera_overlap: Option<f32> [float, optional] = 7;
         /// False balls seen at dribblers, probability.
         dribbler_ball_detections: Option<f32> [float, optional] = 8;

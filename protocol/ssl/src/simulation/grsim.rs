@@ -5,12 +5,12 @@
 use prost::Message;
 
 messages! {
-    /// To port 20011: commands for one team, and things to be moved.
+    /// Datagram to port 20011: commands for one team, and things to be moved.
     #[derive(Clone, PartialEq, Message)]
     pub struct GrsimPacket {
-        /// What robots shall do.
+        /// Orders for one or more robots.
         commands: Option<GrsimCommands> [message, optional] = 1;
-        /// What is to be put somewhere else.
+        /// Objects to be put somewhere else.
         replacement: Option<GrsimReplacement> [message, optional] = 2;
     }
 
@@ -25,7 +25,7 @@ messages! {
         robot_commands: Vec<GrsimRobotCommand> [message, repeated] = 3;
     }
 
-    /// What one robot shall do until the next command.
+    /// Order for one robot until the next command.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct GrsimRobotCommand {
         /// Shell number of the robot, 0–15.
@@ -36,11 +36,11 @@ messages! {
         kickspeedz: f32 [float, required] = 3;
         /// Velocity forward, m/s, robot frame.
         veltangent: f32 [float, required] = 4;
-        /// To the left, m/s.
+        /// Velocity to the left, m/s.
         velnormal: f32 [float, required] = 5;
         /// Turning rate, rad/s, counter-clockwise.
         velangular: f32 [float, required] = 6;
-        /// Whether the dribbler turns, at full speed.
+        /// True if the dribbler turns, at full speed.
         spinner: bool [bool, required] = 7;
         /// The wheels' speeds below hold instead of the velocities above.
         wheelsspeed: bool [bool, required] = 8;
@@ -54,7 +54,7 @@ messages! {
         wheel4: Option<f32> [float, optional] = 12;
     }
 
-    /// What is to be put somewhere else.
+    /// Objects to be put somewhere else.
     #[derive(Clone, PartialEq, Message)]
     pub struct GrsimReplacement {
         /// New place of the ball; absent: it stays.
@@ -63,12 +63,12 @@ messages! {
         robots: Vec<GrsimRobotReplacement> [message, repeated] = 2;
     }
 
-    /// Where the ball shall be; what is left out stays as it is.
+    /// New state of the ball; fields that are left out stay as they are.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct GrsimBallReplacement {
         /// Along the field's length, m.
         x: Option<f64> [double, optional] = 1;
-        /// To the left of +x, m.
+        /// Coordinate to the left of +x, m.
         y: Option<f64> [double, optional] = 2;
         /// Velocity along +x, m/s.
         vx: Option<f64> [double, optional] = 3;
@@ -76,12 +76,12 @@ messages! {
         vy: Option<f64> [double, optional] = 4;
     }
 
-    /// Where a robot shall stand.
+    /// New place of a robot.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct GrsimRobotReplacement {
         /// Along the field's length, m.
         x: f64 [double, required] = 1;
-        /// To the left of +x, m.
+        /// Coordinate to the left of +x, m.
         y: f64 [double, required] = 2;
         /// Heading, **degrees**, counter-clockwise from +x.
         dir: f64 [double, required] = 3;
@@ -93,7 +93,8 @@ messages! {
         turnon: Option<bool> [bool, optional] = 6;
     }
 
-    /// To port 30011 (blue) or 30012 (yellow) of the sender that commanded last: robots whose state changed.
+    /// Datagram to port 30011 (blue) or 30012 (yellow) of the sender that commanded last: robots whose state
+    /// changed.
     #[derive(Clone, PartialEq, Message)]
     pub struct RobotsStatus {
         /// One state for each robot.
@@ -107,9 +108,9 @@ messages! {
         robot_id: i32 [int32, required] = 1;
         /// The ball is at the dribbler.
         infrared: bool [bool, required] = 2;
-        /// It kicks along the ground now.
+        /// True while it kicks along the ground.
         flat_kick: bool [bool, required] = 3;
-        /// It kicks a chip now.
+        /// True while it kicks a chip.
         chip_kick: bool [bool, required] = 4;
     }
 }

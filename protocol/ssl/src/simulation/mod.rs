@@ -25,7 +25,7 @@ pub use robot::{
 };
 
 messages! {
-    /// What a simulator could not do.
+    /// Command that a simulator could not execute.
     #[derive(Clone, PartialEq, Message)]
     pub struct SimulatorError {
         /// For programs, of the simulator's own choice.
@@ -34,7 +34,7 @@ messages! {
         message: Option<String> [string, optional] = 2;
     }
 
-    /// To port 10300: move things, or change settings.
+    /// Datagram to port 10300: move things, or change settings.
     #[derive(Clone, PartialEq, Message)]
     pub struct SimulatorCommand {
         /// Move ball and robots, or change the speed.
@@ -43,10 +43,10 @@ messages! {
         config: Option<SimulatorConfig> [message, optional] = 2;
     }
 
-    /// What comes back from port 10300.
+    /// Answer of port 10300.
     #[derive(Clone, PartialEq, Message)]
     pub struct SimulatorResponse {
-        /// What was not done; empty when all was.
+        /// Commands that were not executed; empty when all were.
         errors: Vec<SimulatorError> [message, repeated] = 1;
     }
 
@@ -66,7 +66,7 @@ messages! {
     pub struct TeleportBall {
         /// Along the field's length, m.
         x: Option<f32> [float, optional] = 1;
-        /// To the left of +x, m.
+        /// Coordinate to the left of +x, m.
         y: Option<f32> [float, optional] = 2;
         /// Height above the ground, m.
         z: Option<f32> [float, optional] = 3;
@@ -91,7 +91,7 @@ messages! {
         id: RobotId [message, required] = 1;
         /// Along the field's length, m.
         x: Option<f32> [float, optional] = 2;
-        /// To the left of +x, m.
+        /// Coordinate to the left of +x, m.
         y: Option<f32> [float, optional] = 3;
         /// Heading, rad, counter-clockwise from +x.
         orientation: Option<f32> [float, optional] = 4;
@@ -112,11 +112,11 @@ messages! {
     pub struct SimulatorConfig {
         /// The field, in vision's units (mm).
         geometry: Option<GeometryData> [message, optional] = 1;
-        /// What robots are like.
+        /// Properties of the robots in it.
         robot_specs: Vec<RobotSpecs> [message, repeated] = 2;
         /// Noise, delay and losses, in a form of the simulator's own.
         realism_config: Option<RealismConfig> [message, optional] = 3;
-        /// Where vision packets go.
+        /// Destination port of vision packets.
         vision_port: Option<u32> [uint32, optional] = 4;
     }
 
@@ -127,7 +127,7 @@ messages! {
         custom: Vec<Any> [message, repeated] = 1;
     }
 
-    /// What a robot is like.
+    /// Properties of a robot.
     #[derive(Clone, PartialEq, Message)]
     pub struct RobotSpecs {
         /// Robot by shell number and team.
@@ -146,7 +146,7 @@ messages! {
         center_to_dribbler: Option<f32> [float, optional] = 9;
         /// Bounds of its motion.
         limits: Option<RobotLimits> [message, optional] = 10;
-        /// Where its wheels are.
+        /// Positions of its wheels.
         wheel_angles: Option<RobotWheelAngles> [message, optional] = 13;
         /// For ER-Force's simulator a [`RobotSpecErForce`].
         custom: Vec<Any> [message, repeated] = 14;
@@ -169,7 +169,7 @@ messages! {
         vel_angular_max: Option<f32> [float, optional] = 6;
     }
 
-    /// Where the wheels' axles point, rad, counter-clockwise from the robot's front.
+    /// Directions of the wheels' axles, rad, counter-clockwise from the robot's front.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct RobotWheelAngles {
         /// Front right wheel, rad.
@@ -187,18 +187,18 @@ messages! {
     pub struct SimulationSyncRequest {
         /// Length of the step, s.
         sim_step: Option<f32> [float, optional] = 1;
-        /// What port 10300 would get.
+        /// Command as for port 10300.
         simulator_command: Option<SimulatorCommand> [message, optional] = 2;
-        /// What ports 10301 and 10302 would get.
+        /// Orders as for ports 10301 and 10302.
         robot_control: Option<RobotControl> [message, optional] = 3;
     }
 
-    /// What the step brought.
+    /// Result of the step.
     #[derive(Clone, PartialEq, Message)]
     pub struct SimulationSyncResponse {
-        /// What each camera saw.
+        /// Detections of each camera.
         detection: Vec<DetectionFrame> [message, repeated] = 1;
-        /// What ports 10301 and 10302 would send.
+        /// Answer as of ports 10301 and 10302.
         robot_control_response: Option<RobotControlResponse> [message, optional] = 2;
     }
 }

@@ -7,14 +7,14 @@ use super::SimulatorError;
 use crate::common::Any;
 
 messages! {
-    /// To ports 10301 (blue) and 10302 (yellow): one command a robot.
+    /// Datagram to ports 10301 (blue) and 10302 (yellow): one command a robot.
     #[derive(Clone, PartialEq, Message)]
     pub struct RobotControl {
         /// Commands, at most one for each robot.
         robot_commands: Vec<RobotCommand> [message, repeated] = 1;
     }
 
-    /// What one robot shall do until the next command.
+    /// Order for one robot until the next command.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct RobotCommand {
         /// Shell number of the robot, 0–15.
@@ -23,9 +23,9 @@ messages! {
         move_command: Option<RobotMoveCommand> [message, optional] = 2;
         /// Kick as soon as the ball is there, at this speed in space, m/s; 0 or absent: no kick.
         kick_speed: Option<f32> [float, optional] = 3;
-        /// How steep the kick is, **degrees** above the ground: 0 flat, 45 a chip.
+        /// Angle of the kick, **degrees** above the ground: 0 flat, 45 a chip.
         kick_angle: Option<f32> [float, optional, default = "0"] = 4;
-        /// How fast the dribbler turns, rpm.
+        /// Speed of the dribbler, rpm.
         dribbler_speed: Option<f32> [float, optional] = 5;
     }
 }
@@ -71,7 +71,7 @@ messages! {
     pub struct MoveLocalVelocity {
         /// Velocity forward, m/s, robot frame.
         forward: f32 [float, required] = 1;
-        /// To the left, m/s.
+        /// Velocity to the left, m/s.
         left: f32 [float, required] = 2;
         /// Turning rate, rad/s, counter-clockwise.
         angular: f32 [float, required] = 3;
@@ -82,30 +82,30 @@ messages! {
     pub struct MoveGlobalVelocity {
         /// Along the field's length, m/s.
         x: f32 [float, required] = 1;
-        /// To the left of +x, m/s.
+        /// Velocity to the left of +x, m/s.
         y: f32 [float, required] = 2;
         /// Turning rate, rad/s, counter-clockwise.
         angular: f32 [float, required] = 3;
     }
 
-    /// What comes back from ports 10301 and 10302.
+    /// Answer of ports 10301 and 10302.
     #[derive(Clone, PartialEq, Message)]
     pub struct RobotControlResponse {
-        /// What was not done.
+        /// Orders that were not executed.
         errors: Vec<SimulatorError> [message, repeated] = 1;
-        /// What robots feel: every one on the field, or those that were commanded, or also those taken away
+        /// Feedback of robots: every one on the field, or those that were commanded, or also those taken away
         /// (README, trap 9).
         feedback: Vec<RobotFeedback> [message, repeated] = 2;
     }
 
-    /// What one robot feels.
+    /// Feedback of one robot.
     #[derive(Clone, PartialEq, Message)]
     pub struct RobotFeedback {
         /// Shell number of the robot, 0–15.
         id: u32 [uint32, required] = 1;
         /// Is the ball at the dribbler?
         dribbler_ball_contact: Option<bool> [bool, optional] = 2;
-        /// What this simulator adds.
+        /// Additions of this simulator.
         custom: Option<Any> [message, optional] = 3;
     }
 }

@@ -6,13 +6,13 @@ messages! {
     /// One orange blob, detected as a ball.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct DetectionBall {
-        /// How sure it is a ball, 0–1.
+        /// Confidence that it is a ball, 0–1.
         confidence: f32 [float, required] = 1;
         /// Pixels of the blob.
         area: Option<u32> [uint32, optional] = 2;
         /// Along the field's length, mm.
         x: f32 [float, required] = 3;
-        /// To the left of +x, mm.
+        /// Coordinate to the left of +x, mm.
         y: f32 [float, required] = 4;
         /// Height, mm; set by few systems.
         z: Option<f32> [float, optional] = 5;
@@ -25,13 +25,13 @@ messages! {
     /// One pattern of markers.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct DetectionRobot {
-        /// How sure the pattern is, 0–1.
+        /// Confidence in the pattern, 0–1.
         confidence: f32 [float, required] = 1;
         /// Shell number, 0–15; absent where only the centre marker was seen.
         robot_id: Option<u32> [uint32, optional] = 2;
         /// Along the field's length, mm.
         x: f32 [float, required] = 3;
-        /// To the left of +x, mm.
+        /// Coordinate to the left of +x, mm.
         y: f32 [float, required] = 4;
         /// Heading, rad, counter-clockwise from +x; absent where only the centre marker was seen.
         orientation: Option<f32> [float, optional] = 5;
@@ -43,14 +43,14 @@ messages! {
         height: Option<f32> [float, optional] = 8;
     }
 
-    /// What one camera saw in one image.
+    /// Detections of one camera in one image.
     #[derive(Clone, PartialEq, Message)]
     pub struct DetectionFrame {
         /// Counts this camera's images.
         frame_number: u32 [uint32, required] = 1;
-        /// When the image was taken, s: Unix time, or the simulation's own (README, trap 1).
+        /// Time of the image, s: Unix time, or the simulation's own (README, trap 1).
         t_capture: f64 [double, required] = 2;
-        /// When the packet was sent, s, on the same clock.
+        /// Time of sending, s, on the same clock.
         t_sent: f64 [double, required] = 3;
         /// Number of the camera, from 0.
         camera_id: u32 [uint32, required] = 4;
@@ -60,7 +60,7 @@ messages! {
         robots_yellow: Vec<DetectionRobot> [message, repeated] = 6;
         /// Robots with a blue centre marker.
         robots_blue: Vec<DetectionRobot> [message, repeated] = 7;
-        /// When the image was taken by the camera's own clock, s.
+        /// Time of the image by the camera's own clock, s.
         t_capture_camera: Option<f64> [double, optional] = 8;
     }
 }

@@ -8,14 +8,14 @@ messages! {
     pub struct Vector2f {
         /// Along the field's length, mm.
         x: f32 [float, required] = 1;
-        /// To the left of +x, mm.
+        /// Coordinate to the left of +x, mm.
         y: f32 [float, required] = 2;
     }
 
     /// A straight line painted on the field.
     #[derive(Clone, PartialEq, Message)]
     pub struct FieldLineSegment {
-        /// Which line, as `TopTouchLine` or `LeftPenaltyStretch`.
+        /// Name of the line, as `TopTouchLine` or `LeftPenaltyStretch`.
         name: String [string, required] = 1;
         /// One end, on the middle of the line's width.
         p1: Vector2f [message, required] = 2;
@@ -30,15 +30,15 @@ messages! {
     /// A round line painted on the field.
     #[derive(Clone, PartialEq, Message)]
     pub struct FieldCircularArc {
-        /// Which arc, as `CenterCircle`.
+        /// Name of the arc, as `CenterCircle`.
         name: String [string, required] = 1;
         /// Centre of the circle, mm.
         center: Vector2f [message, required] = 2;
-        /// Its radius, mm, to the middle of the line's width.
+        /// Radius, mm, to the middle of the line's width.
         radius: f32 [float, required] = 3;
-        /// Where it starts, rad, counter-clockwise from +x.
+        /// Start of the arc, rad, counter-clockwise from +x.
         a1: f32 [float, required] = 4;
-        /// Where it ends, rad.
+        /// End of the arc, rad, counter-clockwise from +x.
         a2: f32 [float, required] = 5;
         /// Width of the paint, mm.
         thickness: f32 [float, required] = 6;
@@ -85,7 +85,7 @@ messages! {
         goal_substitution_area_width: Option<i32> [int32, optional] = 17;
     }
 
-    /// Where a camera hangs and how it looks.
+    /// Pose and optics of a camera.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct GeometryCameraCalibration {
         /// Number of the camera, from 0.
@@ -113,11 +113,11 @@ messages! {
         ty: f32 [float, required] = 11;
         /// Component z of the translation, mm.
         tz: f32 [float, required] = 12;
-        /// Where the camera hangs, along x, mm, field frame.
+        /// Position of the camera along x, mm, field frame.
         derived_camera_world_tx: Option<f32> [float, optional] = 13;
-        /// Where the camera hangs, along y, mm, field frame.
+        /// Position of the camera along y, mm, field frame.
         derived_camera_world_ty: Option<f32> [float, optional] = 14;
-        /// How high the camera hangs, mm.
+        /// Height of the camera, mm.
         derived_camera_world_tz: Option<f32> [float, optional] = 15;
         /// Columns of the image, px.
         pixel_image_width: Option<u32> [uint32, optional] = 16;
@@ -155,22 +155,22 @@ messages! {
         acc_slide: f64 [double, required] = 1;
         /// Acceleration while it rolls, m/s², < 0.
         acc_roll: f64 [double, required] = 2;
-        /// It rolls from this fraction of its kick speed on, 0–1.
+        /// Fraction of its kick speed from which the ball rolls, 0–1.
         k_switch: f64 [double, required] = 3;
     }
 
     /// A chipped ball: each bounce keeps a fixed part of its speed.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct BallModelChipFixedLoss {
-        /// What the first bounce keeps of the speed along the ground, 0–1.
+        /// Share of the speed along the ground that the first bounce keeps, 0–1.
         damping_xy_first_hop: f64 [double, required] = 1;
-        /// What later bounces keep of it, 0–1.
+        /// Share of it that later bounces keep, 0–1.
         damping_xy_other_hops: f64 [double, required] = 2;
-        /// What a bounce keeps of the vertical speed, 0–1.
+        /// Share of the vertical speed that a bounce keeps, 0–1.
         damping_z: f64 [double, required] = 3;
     }
 
-    /// How the ball moves here. Simulators differ widely: read it, hard-code nothing.
+    /// Models of the ball's motion. Simulators differ widely: read it, hard-code nothing.
     #[derive(Clone, Copy, PartialEq, Message)]
     pub struct GeometryModels {
         /// Model of a ball on the ground.
@@ -186,7 +186,7 @@ messages! {
         field: GeometryFieldSize [message, required] = 1;
         /// Cameras: all of them, or one a packet; merge by camera id.
         calib: Vec<GeometryCameraCalibration> [message, repeated] = 2;
-        /// How the ball moves.
+        /// Models of the ball's motion.
         models: Option<GeometryModels> [message, optional] = 3;
     }
 }

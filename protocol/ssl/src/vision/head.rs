@@ -4,16 +4,16 @@ use prost::Message;
 
 use crate::wire::{Fields, Value};
 
-/// What identifies a camera frame. Decoding skips its balls and robots.
+/// Identification of a camera frame. Decoding skips its balls and robots.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct FrameHead {
     /// Counts this camera's images.
     #[prost(uint32, required, tag = "1")]
     pub frame_number: u32,
-    /// When the image was taken, s, on the sender's clock.
+    /// Time of the image, s, on the sender's clock.
     #[prost(double, required, tag = "2")]
     pub t_capture: f64,
-    /// When the packet was sent, s, on the same clock.
+    /// Time of sending, s, on the same clock.
     #[prost(double, required, tag = "3")]
     pub t_sent: f64,
     /// Number of the camera, from 0.
@@ -22,7 +22,7 @@ pub struct FrameHead {
 }
 
 impl FrameHead {
-    /// Of a datagram of vision; `None` where it has no camera frame, or cannot be read.
+    /// Reads the head of a datagram of vision; `None` where it has no camera frame, or cannot be read.
     pub fn of(packet: &[u8]) -> Option<Self> {
         let detection = Fields::of(packet).map_while(Result::ok).find_map(|field| match field.value {
             Value::Bytes(bytes) if field.number == 1 => Some(bytes),

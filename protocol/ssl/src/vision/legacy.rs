@@ -53,7 +53,7 @@ messages! {
     /// A datagram of vision in 2014: a camera's frame, the field, or both.
     #[derive(Clone, PartialEq, Message)]
     pub struct WrapperPacket {
-        /// What one camera saw.
+        /// Detections of one camera.
         detection: Option<DetectionFrame> [message, optional] = 1;
         /// The field and cameras.
         geometry: Option<GeometryData> [message, optional] = 2;

@@ -24,11 +24,11 @@ messages! {
     /// A datagram of vision: a camera's frame, the field, or both.
     #[derive(Clone, PartialEq, Message)]
     pub struct WrapperPacket {
-        /// What one camera saw.
+        /// Detections of one camera.
         detection: Option<DetectionFrame> [message, optional] = 1;
         /// The field and cameras; grSim sends one camera's calibration a packet, so merge by camera id.
         geometry: Option<GeometryData> [message, optional] = 2;
-        /// Which program sent it, [`Source`]; most leave it out.
+        /// Kind of program that sent it, [`Source`]; most leave it out.
         source: Option<i32> [enumeration = "Source", optional] = 3;
     }
 }

@@ -33,7 +33,7 @@ use crate::wheels::EncoderCounts;
 pub struct HallMotor<P, E, H>(CriticalSectionMutex<RefCell<Option<ThreePwm<P, E, H>>>>);
 
 impl<P, E, H> HallMotor<P, E, H> {
-    /// Without a driver.
+    /// A motor without a driver.
     pub const fn new() -> Self {
         Self(CriticalSectionMutex::new(RefCell::new(None)))
     }
@@ -91,7 +91,7 @@ impl<P: SetDutyCycle, E: OutputPin, H: InputPin> Bridge for &HallMotor<P, E, H> 
 /// The edges of four motors' sensors as encoders: the robot's description gives `counts_a_turn`, six for each
 /// pair of poles times the gear.
 impl<P: SetDutyCycle, E: OutputPin, H: InputPin> EncoderCounts for [&HallMotor<P, E, H>; WHEELS] {
-    const RIM_A_COUNT: f32 =
+    const RIM_PER_COUNT: f32 =
         2.0 * core::f32::consts::PI * RobotSpec::OURS.wheels.radius / RobotSpec::OURS.wheels.counts_a_turn;
 
     fn counts(&self) -> [u16; WHEELS] {

@@ -187,7 +187,7 @@ fn edges_count_both_ways_and_a_jump_over_half_a_turn_does_not() {
 }
 
 #[test]
-fn four_shared_motors_turn_as_bridges_drive_them_once_a_millisecond_and_edges_commutate_in_between() {
+fn four_shared_motors_turn_as_driven_with_edges_that_commutate_between_steps() {
     let mut motors = [0.3, 1.7, 3.1, 5.0].map(|angle| Motor::with_pairs(8.0, angle));
     let shared: [HallMotor<Pwm, Pin, Pin>; 4] = core::array::from_fn(|_| HallMotor::new());
     for (motor, shared) in motors.iter().zip(&shared) {
@@ -231,7 +231,7 @@ fn four_shared_motors_turn_as_bridges_drive_them_once_a_millisecond_and_edges_co
 }
 
 #[test]
-fn without_interrupts_the_control_loop_alone_does_not_reach_the_speed_and_without_a_driver_nothing_drives() {
+fn without_interrupts_full_speed_is_not_reached_and_without_a_driver_nothing_turns() {
     // So that the test above is known to need the edges.
     let mut motor = Motor::with_pairs(8.0, 0.3);
     let shared = HallMotor::new();

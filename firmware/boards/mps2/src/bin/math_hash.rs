@@ -71,7 +71,7 @@ mod check {
         for (i, byte) in source.0.iter_mut().enumerate() {
             *byte = i as u8 + 1;
         }
-        let (to, from) = (MARGIN + to, MARGIN + from);
+        let (to, from) = (GUARD_LEN + to, GUARD_LEN + from);
         // SAFETY (of the functions passed in): both ranges lie within buffers of their own, the margins cover
         // all offsets.
         copy(target.0[to..].as_mut_ptr().cast(), source.0[from..].as_ptr().cast(), len);
@@ -85,8 +85,8 @@ mod check {
     struct Aligned([u8; BUFFER_LEN]);
 
     const LEN_MAX: usize = 70;
-    const MARGIN: usize = 8;
-    const BUFFER_LEN: usize = LEN_MAX + 2 * MARGIN;
+    const GUARD_LEN: usize = 8;
+    const BUFFER_LEN: usize = LEN_MAX + 2 * GUARD_LEN;
 }
 
 #[cfg(not(target_os = "none"))]

@@ -18,7 +18,6 @@ pub(crate) fn interrupt() {
     RECEIVED.wake();
 }
 
-/// The controller, started.
 pub(crate) struct Ethernet {
     address: [u8; 6],
     frame: [u32; FRAME_WORDS],
@@ -71,7 +70,6 @@ impl Driver for Ethernet {
     }
 }
 
-/// A received frame.
 pub(crate) struct Received<'a>(&'a mut [u8]);
 
 impl RxToken for Received<'_> {

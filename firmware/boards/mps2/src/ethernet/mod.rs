@@ -94,18 +94,18 @@ mod sockets {
     /// Frames of the host: those of two snapshots, their commands, and beacons passed on. Own frames: as
     /// many as the outbox holds.
     pub(super) fn radio(stack: Stack<'static>, port: u16) -> &'static UdpSocket<'static> {
-        static IN: StaticCell<Room<32, 4096>> = StaticCell::new();
-        static OUT: StaticCell<Room<8, 1024>> = StaticCell::new();
+        static RX: StaticCell<Room<32, 4096>> = StaticCell::new();
+        static TX: StaticCell<Room<8, 1024>> = StaticCell::new();
         static SOCKET: StaticCell<UdpSocket<'static>> = StaticCell::new();
-        SOCKET.init(opened(stack, port, IN.init(Room::new()), OUT.init(Room::new())))
+        SOCKET.init(opened(stack, port, RX.init(Room::new()), TX.init(Room::new())))
     }
 
     /// One of each direction, and one more while the first is handled.
     pub(super) fn body(stack: Stack<'static>, port: u16) -> &'static UdpSocket<'static> {
-        static IN: StaticCell<Room<2, 640>> = StaticCell::new();
-        static OUT: StaticCell<Room<2, 256>> = StaticCell::new();
+        static RX: StaticCell<Room<2, 640>> = StaticCell::new();
+        static TX: StaticCell<Room<2, 256>> = StaticCell::new();
         static SOCKET: StaticCell<UdpSocket<'static>> = StaticCell::new();
-        SOCKET.init(opened(stack, port, IN.init(Room::new()), OUT.init(Room::new())))
+        SOCKET.init(opened(stack, port, RX.init(Room::new()), TX.init(Room::new())))
     }
 
     fn opened<const N: usize, const M: usize, const A: usize, const B: usize>(

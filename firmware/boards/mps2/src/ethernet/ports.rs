@@ -17,7 +17,7 @@ use runtime::progress::RobotPart;
 
 use super::BOXES;
 
-/// Receives frames, from anywhere: their tags tell whose they are.
+/// Receiver of frames, from any address: their tags authenticate them.
 pub(crate) struct UdpReceiver(pub(crate) &'static UdpSocket<'static>);
 
 impl RadioReceiver for UdpReceiver {
@@ -34,7 +34,7 @@ impl RadioReceiver for UdpReceiver {
     }
 }
 
-/// Sends frames.
+/// Sender of frames as UDP datagrams.
 pub(crate) struct UdpSender {
     pub(crate) socket: &'static UdpSocket<'static>,
     pub(crate) to: SocketAddrV4,
@@ -103,12 +103,12 @@ impl SensesPort for Senses {
         self.0.next().await;
         let now = Instant::now();
         let last = critical_section::with(|cs| SEEN.borrow_ref(cs).clone());
-        let fresh = last.filter(|(at, _)| now.duration_since(*at) <= HOLDS);
+        let fresh = last.filter(|(at, _)| now.duration_since(*at) <= SENSOR_FRAME_AGE_MAX);
         fresh.map_or_else(nothing, |(_, snapshot)| snapshot)
     }
 }
 
-/// What a robot knows whose body says nothing: it stands, and has neither ball nor kicker.
+/// Sensor frame of a robot whose body is silent: it stands, and has neither ball nor kicker.
 fn nothing() -> SensorFrame {
     SensorFrame {
         pose: None,
@@ -122,8 +122,8 @@ fn nothing() -> SensorFrame {
     }
 }
 
-/// How long a sensor frame holds: five of the body's steps.
-const HOLDS: Duration = Duration::from_millis(50);
+/// Longest validity of a sensor frame: five of the body's steps.
+const SENSOR_FRAME_AGE_MAX: Duration = Duration::from_millis(50);
 /// Bytes of the longest orders: a tag, five floats, and a kick with its speed.
 const ORDER_LEN_MAX: usize = 32;
 /// Bytes of the longest sensor frame, of the datagrams that are read.

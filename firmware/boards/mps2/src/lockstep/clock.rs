@@ -94,7 +94,7 @@ embassy_time_driver::time_driver_impl!(static TIME: Time = Time {
     alarms: Mutex::new(RefCell::new(Queue::new())),
 });
 
-/// Whether some task is ready.
+/// True while some task is ready.
 static WORK: AtomicBool = AtomicBool::new(false);
 
 /// Embassy's executor calls this, by this name, when a task was woken.

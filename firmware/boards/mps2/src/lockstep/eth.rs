@@ -17,7 +17,7 @@ pub(crate) fn start() -> Option<(Inlet, Outlet)> {
     if !lan9118::start() {
         return None;
     }
-    Some((Inlet { frame: [0; FRAME_DESCRIPTION] }, Outlet { frame: [0; FRAME_DESCRIPTION] }))
+    Some((Inlet { frame: [0; FRAME_WORDS] }, Outlet { frame: [0; FRAME_WORDS] }))
 }
 
 /// Number of foreign or too long frames.
@@ -25,7 +25,7 @@ pub(crate) static STRANGE_FRAMES: AtomicU32 = AtomicU32::new(0);
 
 /// Takes frames from the controller.
 pub(crate) struct Inlet {
-    frame: [u32; FRAME_DESCRIPTION],
+    frame: [u32; FRAME_WORDS],
 }
 
 impl Inlet {
@@ -60,7 +60,7 @@ fn message_in(frame: Option<&[u8]>) -> Option<core::ops::Range<usize>> {
 
 /// Passes frames to the controller.
 pub(crate) struct Outlet {
-    frame: [u32; FRAME_DESCRIPTION],
+    frame: [u32; FRAME_WORDS],
 }
 
 impl Outlet {
@@ -104,4 +104,4 @@ const HEADER: [u8; HEADER_LEN] = {
 const HEADER_LEN: usize = 14;
 /// Offset of the message, behind header and length.
 const MESSAGE_AT: usize = HEADER_LEN + 2;
-const FRAME_DESCRIPTION: usize = (MESSAGE_AT + MESSAGE_LEN_MAX + CHECKSUM_LEN).div_ceil(4);
+const FRAME_WORDS: usize = (MESSAGE_AT + MESSAGE_LEN_MAX + CHECKSUM_LEN).div_ceil(4);

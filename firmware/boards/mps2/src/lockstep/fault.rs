@@ -31,8 +31,8 @@ fn ended(how: Ending<'_>) -> ! {
 fn print(pieces: &[&[u8]]) {
     // If that fails too, no output is left.
     if let Ok(mut stderr) = hio::hstderr() {
-        for label in pieces.iter().chain([&&b"\n"[..]]) {
-            let _ = stderr.write_all(label);
+        for piece in pieces.iter().chain([&&b"\n"[..]]) {
+            let _ = stderr.write_all(piece);
         }
     }
 }

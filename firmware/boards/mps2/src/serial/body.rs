@@ -10,7 +10,7 @@ use runtime::wheel::WHEELS;
 
 /// Rim speeds, m/s, as bits.
 static SPEEDS: [AtomicU32; WHEELS] = [const { AtomicU32::new(0) }; WHEELS];
-/// Whether the motors have current.
+/// True while the motors have current.
 static DRIVEN: AtomicBool = AtomicBool::new(false);
 /// The capacitor's voltage, V, as bits.
 static VOLTS: AtomicU32 = AtomicU32::new(0);
@@ -24,7 +24,7 @@ pub(crate) fn stop() {
     VOLTS.store(0, Ordering::Relaxed);
 }
 
-/// Four simulated wheels.
+/// Four wheels that follow their duty cycle.
 pub(crate) struct Motors;
 
 impl WheelsPort for Motors {
@@ -32,11 +32,11 @@ impl WheelsPort for Motors {
         SPEEDS.each_ref().map(|speed| f32::from_bits(speed.load(Ordering::Relaxed)))
     }
 
-    fn drive(&mut self, rule_role: [f32; WHEELS], _dribbler: f32) {
+    fn drive(&mut self, duty: [f32; WHEELS], _dribbler: f32) {
         DRIVEN.store(true, Ordering::Relaxed);
-        for (speed, rule_role) in SPEEDS.iter().zip(rule_role) {
+        for (speed, duty) in SPEEDS.iter().zip(duty) {
             let now = f32::from_bits(speed.load(Ordering::Relaxed));
-            speed.store((now + (rule_role * FREE_SPEED - now) * FOLLOWS).to_bits(), Ordering::Relaxed);
+            speed.store((now + (duty * FREE_SPEED - now) * RESPONSE_PER_STEP).to_bits(), Ordering::Relaxed);
         }
     }
 
@@ -61,14 +61,14 @@ impl Kicker for Coil {
 
     async fn act(&mut self, act: KickerAct) {
         let change = match act {
-            KickerAct::Charge => CHARGES,
-            KickerAct::Bleed => -CHARGES,
+            KickerAct::Charge => CHARGE_PER_STEP,
+            KickerAct::Bleed => -CHARGE_PER_STEP,
             KickerAct::Flat(_) | KickerAct::Chip(_) => -FULL_VOLTS,
             KickerAct::Rest => 0.0,
         };
         let volts = volts() + change;
         VOLTS.store((if volts > 0.0 { volts } else { 0.0 }).to_bits(), Ordering::Relaxed);
-        embassy_time::Timer::after(embassy_time::Duration::from_micros(STEP.0)).await;
+        embassy_time::Timer::after(embassy_time::Duration::from_micros(KICKER_PERIOD.0)).await;
     }
 }
 
@@ -86,11 +86,11 @@ fn volts() -> f32 {
     f32::from_bits(VOLTS.load(Ordering::Relaxed))
 }
 
-/// Rim speed at a duty cycle of 1, m/s, and the share of a change that happens in a millisecond (a motor's 30
-/// ms).
+/// Rim speed at a duty cycle of 1, m/s.
 const FREE_SPEED: f32 = 6.0;
-const FOLLOWS: f32 = 1.0 / 30.0;
+/// Share of a change that happens in a millisecond: a motor's time constant is 30 ms.
+const RESPONSE_PER_STEP: f32 = 1.0 / 30.0;
 /// Change of the capacitor's voltage in a step of the kicker, V: full in 0.4 s.
-const CHARGES: f32 = 0.5;
+const CHARGE_PER_STEP: f32 = 0.5;
 /// Period of the kicker.
-const STEP: Duration = Duration::millis(1);
+const KICKER_PERIOD: Duration = Duration::millis(1);

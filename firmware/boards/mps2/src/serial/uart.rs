@@ -32,8 +32,8 @@ pub(crate) fn start() {
 /// line's rate.
 static CAME: Pipe<CriticalSectionRawMutex, 512> = Pipe::new();
 /// Number of bytes that found it full, for a debugger to read.
-static LOST: AtomicU32 = AtomicU32::new(0);
-static ROOM: AtomicWaker = AtomicWaker::new();
+static RX_DROPPED: AtomicU32 = AtomicU32::new(0);
+static TX_SPACE_WAKER: AtomicWaker = AtomicWaker::new();
 
 /// Only the line's two interrupts are enabled.
 #[exception]
@@ -43,16 +43,16 @@ unsafe fn DefaultHandler(number: i16) {
         INTERRUPTS.write(RX_INTERRUPT_BIT);
         while STATE.read() & RX_FULL != 0 {
             if CAME.try_write(&[DATA.read() as u8]).is_err() {
-                LOST.store(LOST.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+                RX_DROPPED.store(RX_DROPPED.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
             }
         }
     } else {
         INTERRUPTS.write(TX_INTERRUPT_BIT);
-        ROOM.wake();
+        TX_SPACE_WAKER.wake();
     }
 }
 
-/// Receives frames.
+/// Receiver of frames from the serial line.
 pub(crate) struct UartReceiver(Lines);
 
 impl UartReceiver {
@@ -73,14 +73,14 @@ impl RadioReceiver for UartReceiver {
     }
 }
 
-/// Sends frames.
+/// Sender of frames to the serial line.
 pub(crate) struct UartSender;
 
 impl RadioSender for UartSender {
     async fn send(&mut self, packet: Packet) {
         for byte in &line(&packet) {
             poll_fn(|context| {
-                ROOM.register(context.waker());
+                TX_SPACE_WAKER.register(context.waker());
                 if STATE.read() & TX_FULL == 0 { Poll::Ready(()) } else { Poll::Pending }
             })
             .await;

@@ -20,7 +20,7 @@ use static_cell::StaticCell;
 /// Starts the timer; call once.
 pub(crate) fn start(mut timer: SYST) {
     timer.set_clock_source(SystClkSource::Core);
-    timer.set_reload(PERIOD - 1);
+    timer.set_reload(PERIOD_TICKS - 1);
     timer.clear_current();
     timer.enable_counter();
     timer.enable_interrupt();
@@ -48,7 +48,7 @@ pub(crate) fn run(init: impl FnOnce(Spawner)) -> ! {
     }
 }
 
-/// Embassy's time driver.
+/// Time driver of embassy.
 struct Time {
     /// Whole milliseconds since the start; 49 days of them.
     millis: AtomicU32,
@@ -65,7 +65,7 @@ impl Driver for Time {
                 left = SYST::get_current();
                 millis = millis.wrapping_add(1);
             }
-            u64::from(millis) * 1_000 + u64::from((PERIOD - 1).saturating_sub(left) / TICKS_A_MICRO)
+            u64::from(millis) * 1_000 + u64::from((PERIOD_TICKS - 1).saturating_sub(left) / TICKS_PER_US)
         })
     }
 
@@ -88,7 +88,7 @@ fn SysTick() {
     critical_section::with(|cs| TIME.alarms.borrow_ref_mut(cs).next_expiration(now));
 }
 
-/// Whether some task is ready.
+/// True while some task is ready.
 static WORK: AtomicBool = AtomicBool::new(true);
 
 /// Embassy's executor calls this, by this name, when a task was woken.
@@ -98,6 +98,6 @@ fn pender(_executor: *mut ()) {
 }
 
 /// Timer ticks per microsecond: 25 MHz.
-const TICKS_A_MICRO: u32 = 25;
+const TICKS_PER_US: u32 = 25;
 /// Period of the timer in its ticks: a millisecond.
-const PERIOD: u32 = 1_000 * TICKS_A_MICRO;
+const PERIOD_TICKS: u32 = 1_000 * TICKS_PER_US;

@@ -19,7 +19,7 @@ use crate::parts;
 pub(crate) struct CrashContext {
     /// Starts since power-on, this one included.
     pub(crate) boots: u32,
-    /// Panics since then.
+    /// Panics and faults since power-on.
     pub(crate) panics: u32,
     place: [u8; PLACE_LEN],
     place_len: usize,
@@ -47,19 +47,19 @@ pub(crate) fn crash_context() -> CrashContext {
     }
     crash_context.boots = crash_context.boots.wrapping_add(1);
     BITTEN.store(crash_context.bitten != 0, Ordering::Relaxed);
-    let reported = crash_context;
+    let start = crash_context;
     // Reported once: the next boot epoch has its own end.
     crash_context.bitten = 0;
     with(|kept| *kept = crash_context);
-    reported
+    start
 }
 
-/// Whether this is the first boot epoch since power-on.
+/// Returns whether this is the first boot epoch since power-on.
 pub(crate) fn is_first_epoch() -> bool {
     with(|crash_context| crash_context.boots) == 1
 }
 
-/// Whether the watchdog ended the last boot epoch.
+/// Returns whether the watchdog ended the last boot epoch.
 pub(crate) fn was_bitten() -> bool {
     BITTEN.load(Ordering::Relaxed)
 }

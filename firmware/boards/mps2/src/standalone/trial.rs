@@ -14,8 +14,8 @@ use super::stack;
 /// reports the deepest use of the stack every second.
 pub(crate) async fn run() {
     // SAFETY: plain memory of the board above the firmware (build.rs), never written after the start.
-    let label = unsafe { (protocol::slot::TRIAL_ADDRESS as *const u32).read_volatile() };
-    if label == 3 {
+    let requested = unsafe { (protocol::slot::TRIAL_ADDRESS as *const u32).read_volatile() };
+    if requested == 3 {
         loop {
             Timer::after(Duration::from_secs(1)).await;
             print(&[b"stack ", &digits(stack::used())]);
@@ -23,10 +23,10 @@ pub(crate) async fn run() {
     }
     Timer::after(Duration::from_millis(300)).await;
     if fault::is_first_epoch() {
-        match label {
+        match requested {
             1 => panic!(),
             2 => {
-                while !NEVER.load(Ordering::Relaxed) {
+                while !WAKE_UP.load(Ordering::Relaxed) {
                     core::hint::spin_loop();
                 }
             }
@@ -35,4 +35,5 @@ pub(crate) async fn run() {
     }
 }
 
-static NEVER: AtomicBool = AtomicBool::new(false);
+/// Ends the hung task's loop; never set.
+static WAKE_UP: AtomicBool = AtomicBool::new(false);

@@ -8,19 +8,19 @@ use runtime::ports::Watchdog;
 use super::{console::print, fault};
 use crate::parts;
 
-/// The watchdog, running.
+/// Watchdog of the chip, running.
 pub(crate) struct BoardWatchdog(());
 
 /// Starts it; from now on it must be fed.
 pub(crate) fn start() -> BoardWatchdog {
     LOCK.write(UNLOCKED);
-    LOAD.write(PATIENCE_TICKS);
+    LOAD.write(TIMEOUT_TICKS);
     CONTROL.write(INTERRUPT | RESET);
     BoardWatchdog(())
 }
 
 impl Watchdog for BoardWatchdog {
-    const PATIENCE: Duration = PATIENCE;
+    const TIMEOUT: Duration = TIMEOUT;
 
     fn feed(&mut self) {
         // Any value reloads the counter.
@@ -28,7 +28,7 @@ impl Watchdog for BoardWatchdog {
     }
 }
 
-/// Whether the watchdog ended the last boot epoch.
+/// Returns whether the watchdog ended the last boot epoch.
 pub(crate) fn has_bitten() -> bool {
     fault::was_bitten()
 }
@@ -66,6 +66,6 @@ const UNLOCKED: u32 = 0x1acc_e551;
 const INTERRUPT: u32 = 1;
 const RESET: u32 = 1 << 1;
 /// Time until the first time-out.
-const PATIENCE: Duration = Duration::millis(100);
+const TIMEOUT: Duration = Duration::millis(100);
 /// The same in ticks of 25 MHz.
-const PATIENCE_TICKS: u32 = 25 * PATIENCE.0 as u32;
+const TIMEOUT_TICKS: u32 = 25 * TIMEOUT.0 as u32;

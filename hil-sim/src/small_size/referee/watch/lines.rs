@@ -90,7 +90,7 @@ fn is_aimless(game: &GameView<'_>, touch: Touch, end: GoalEnd, place: Point<Fiel
     let own = game.own_end(touch.who.colour);
     let from_kickoff = touch.ball.distance(Point::new(0.0, 0.0)) < limits::IN_PLAY_DISTANCE;
     let crossing = Crossing { line: BoundaryLine::Goal(end), at: place };
-    let out = after_out(game.field, game.limits, crossing, own, Some(touch.ball), from_kickoff);
+    let out = after_out(game.field, game.limits, crossing, own, (!from_kickoff).then_some(touch.ball));
     out.kind == OutKind::AimlessKick
 }
 
