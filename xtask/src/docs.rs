@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::context::{Context, Failure, line_of, run};
-use crate::{bench, budgets, cost, evaluation, example_cost, page, pictures};
+use crate::{bench, budgets, evaluation, example_cost, page, pictures};
 
 /// Figures that one program makes, and the pages that show them.
 struct Figures {

@@ -49,7 +49,7 @@ fn robot(station: &UdpSocket, fault: Fault, loses: f32, end: &AtomicBool) -> Vec
     let mut host: Option<SocketAddr> = None;
     while host.is_none() && !end.load(Ordering::Relaxed) {
         if let Ok((len, from)) = station.recv_from(&mut bytes) {
-            listener.hear(&bytes[..len]);
+            listener.receive(&bytes[..len]);
             host = Some(from);
         }
     }

@@ -15,7 +15,7 @@ use clap::Args;
 use figures::FigureFile;
 use report::{Ablation, Facts, Map, Report};
 use study::evaluation::{Identity, Results, compare, paper};
-use study::store::{in_words, merge};
+use study::store::{StoredExperiment, in_words, merge};
 
 use super::{merge as shards, work};
 use crate::Failure;
