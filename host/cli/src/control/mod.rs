@@ -167,7 +167,7 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         None => (0..by_default).filter_map(RobotId::new).collect(),
     };
     let cases = Cases::choose(&args.cases, config.league)?;
-    let page_settings = (!args.headless).then(|| PageSettings {
+    let page_settings = (!args.headless).then_some(PageSettings {
         args: &args.page,
         live_parameters: args.live_parameters,
         library: cases.library_handle,

@@ -40,7 +40,9 @@ impl<'a> FieldOperator<'a> {
 impl Spectator for FieldOperator<'_> {
     fn started(&mut self, lines: Vec<String>) {
         note!("{}", self.title);
-        lines.iter().for_each(|line| note!("{line}"));
+        for line in lines {
+            note!("{line}");
+        }
         if let Some(to) = self.args.tracker {
             note!("tracker  to {to}");
         }
