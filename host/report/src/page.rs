@@ -1,5 +1,5 @@
-//! `page`: layout of the report page: at a glance, the claims, tables with their plots, maps, every comparison,
-//! every parameter.
+//! `page`: layout of the report page: at a glance, the claims, tables with their plots, maps, every
+//! comparison, every parameter.
 
 use arena::evaluation::statistics::stars;
 use arena::evaluation::{Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine};
