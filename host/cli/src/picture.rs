@@ -1,5 +1,5 @@
-//! `picture`: figures written as SVG or PNG. A PNG is equal on every machine: its letters come from the font in
-//! `fonts`, never from what is installed.
+//! `picture`: figures written as SVG or PNG. A PNG is equal on every machine: its letters come from the font
+//! in `fonts`, never from what is installed.
 
 #[cfg(feature = "png")]
 mod png;

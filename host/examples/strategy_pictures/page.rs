@@ -151,7 +151,8 @@ impl Panel {
         );
     }
 
-    /// Fills the area where `value` is at least `level`: cells of `step` m, their borders straight between corners.
+    /// Fills the area where `value` is at least `level`: cells of `step` m, their borders straight between
+    /// corners.
     pub(crate) fn area_above(
         &mut self,
         step: f32,

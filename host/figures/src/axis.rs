@@ -42,7 +42,8 @@ impl Axis {
         }
     }
 
-    /// An axis of ratios, on which 2 and 1/2 are as far from 1, between positive `ends` with numbers at `ticks`.
+    /// An axis of ratios, on which 2 and 1/2 are as far from 1, between positive `ends` with numbers at
+    /// `ticks`.
     pub fn logarithmic(ends: [f64; 2], places: [f64; 2], ticks: &[f64]) -> Self {
         Self { ends, places, is_logarithmic: true, ticks: ticks.to_vec(), decimals: None }
     }

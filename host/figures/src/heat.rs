@@ -156,7 +156,7 @@ fn color(value: f64, scale: Scale<'_>) -> Option<String> {
     }
 }
 
-/// Colour of a share of the scale from 0 to 1, in [`SHADE_STEPS`] steps; beyond an end, that end's.
+/// Colour of a share of the scale from 0 to 1, in 64 steps; beyond an end, the colour of that end.
 pub fn shade(share: f64) -> String {
     let steps = SHADE_STEPS as f64;
     let along = (share.clamp(0.0, 1.0) * steps).round() / steps * (SHADES.len() - 1) as f64;

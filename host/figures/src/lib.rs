@@ -5,8 +5,8 @@
 //!             └─► Axis ──► Panel ──► Figure ──────────────┼─► SVG files, or a Page of HTML
 //!                                    Table ───────────────┴─► text, Markdown, HTML
 //! ```
-//! Coordinates have y up, as on the field and in a chart: mm on fields, px in charts; [`Svg::finish`] sets the
-//! size of the unit on a screen.
+//! Coordinates have y up, as on the field and in a chart: mm on fields, px in charts; [`Svg::finish`] sets
+//! the size of the unit on a screen.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]
 #![forbid(unsafe_code)]
 

@@ -346,9 +346,9 @@ mod tests {
         let text = table().text();
         let lines: Vec<_> = text.lines().collect();
         // The unit belongs to the heading.
-        assert_eq!(lines[0], "  team  goals (a match)         note");
+        assert_eq!(lines[0], "  team  goals (a match)        note");
         assert_eq!(lines[1], "  a|b             +12.5 (7)**");
-        assert_eq!(lines[2], "  c                   3         x < *y*");
+        assert_eq!(lines[2], "  c                   3        x < *y*");
     }
 
     #[test]

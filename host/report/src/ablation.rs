@@ -1,5 +1,5 @@
-//! `ablation`: report of the ablations: a page, a plot and a Markdown table of what every change does, one line
-//! an arm.
+//! `ablation`: report of the ablations: a page, a plot and a Markdown table of what every change does, one
+//! line an arm.
 
 use std::io;
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! `page`: layout of the report page: at a glance, the claims, tables with their plots, maps, every comparison,
-//! every parameter.
+//! `page`: layout of the report page: at a glance, the claims, tables with their plots, maps, every
+//! comparison, every parameter.
 
 use study::statistics::stars;
 use study::evaluation::{Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine};

@@ -1,5 +1,5 @@
-//! `table`: the paper's tables beside ours: our rows, the paper's, their difference; then one approach against
-//! another.
+//! `table`: the paper's tables beside ours: our rows, the paper's, their difference; then one approach
+//! against another.
 //!
 //! The same lines become HTML here and Markdown in `markdown`. A difference carries Holm's p over the
 //! scenarios of its table.

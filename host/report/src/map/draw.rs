@@ -1,4 +1,5 @@
-//! `draw`: maps of a cell drawn on the field: the ball's seconds as shades, passes as arrows, ends by outcome.
+//! `draw`: maps of a cell drawn on the field: the ball's seconds as shades, passes as arrows, ends by
+//! outcome.
 
 use std::fmt::Write as _;
 
@@ -164,7 +165,8 @@ fn passes(map: &Map) -> Svg {
     svg
 }
 
-/// Draws a robot's place at kick-off: a circle for attackers, a square for opponents, as in the paper's figures.
+/// Draws a robot's place at kick-off: a circle for attackers, a square for opponents, as in the paper's
+/// figures.
 fn kick_off(svg: &mut Svg, [x, y]: [f64; 2], attacker: bool) {
     let colors = Theme::Light.colors();
     let color = if attacker { colors.team } else { colors.opponent };

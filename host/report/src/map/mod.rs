@@ -26,8 +26,8 @@ pub struct Map {
     pub trials: u32,
     /// The field they were played on.
     pub field: casebase::FieldMm,
-    /// Seconds of the ball in each square of [`SQUARE_MM`], row by row from the least y, each from the least x;
-    /// all trials together.
+    /// Seconds of the ball in each square of [`SQUARE_MM`], row by row from the least y, each from the least
+    /// x; all trials together.
     pub seconds: Vec<f64>,
     /// Passes of the attackers, all trials together.
     pub passes: Vec<Pass>,

@@ -1,5 +1,5 @@
-//! `summary`: the paper's tables as text for terminals: ours, the paper's in brackets, and under each scenario
-//! the differences between the approaches.
+//! `summary`: the paper's tables as text for terminals: ours, the paper's in brackets, and under each
+//! scenario the differences between the approaches.
 //!
 //! Stars are p after Holm's correction over the scenarios: * < 0.05, ** < 0.01, *** < 0.001. After a bracket
 //! they mean that ours differs from the paper's; in a line of differences, that the approaches differ.

@@ -1,6 +1,6 @@
-//! `calibration`: calibration plot of P(we have it): for each tenth of it, how many of the passes the team had,
-//! with Wilson's 95 % interval; on the diagonal both agree (Biswas et al. 2014, equation 5). px, shares from 0
-//! to 1.
+//! `calibration`: calibration plot of P(we have it): for each tenth of it, how many of the passes the team
+//! had, with Wilson's 95 % interval; on the diagonal both agree (Biswas et al. 2014, equation 5). px, shares
+//! from 0 to 1.
 
 use figures::{Anchor, Axis, Font, Svg, Theme};
 

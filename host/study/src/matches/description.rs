@@ -1,5 +1,5 @@
-//! `description`: match results as Markdown tables, for terminals and documents alike: ours beside the paper's
-//! Tables 1 and 2 (Biswas et al. 2014 §6), passes, fouls, and what each part is worth.
+//! `description`: match results as Markdown tables, for terminals and documents alike: ours beside the
+//! paper's Tables 1 and 2 (Biswas et al. 2014 §6), passes, fouls, and what each part is worth.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
