@@ -3,8 +3,8 @@
 //! Each is a change to the paper's team, so that `onetwo trial` can replay any trial of an evaluation or of
 //! an ablation.
 
-use arena::cases::LibraryHandle;
 use arena::Setup;
+use arena::cases::LibraryHandle;
 use brain::Positioning;
 use case_tools::Reduction;
 use clap::{Args, ValueEnum};

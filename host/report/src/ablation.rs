@@ -4,8 +4,6 @@
 use std::io;
 use std::path::Path;
 
-use study::statistics::{Count, newcombe, stars};
-use study::evaluation::{Arm, Effect};
 use brain::Approach;
 use figures::numbers::{p, plain, signed};
 use figures::{
@@ -13,6 +11,8 @@ use figures::{
     row,
 };
 use maud::{Markup, html};
+use study::evaluation::{Arm, Effect};
+use study::statistics::{Count, newcombe, stars};
 
 use crate::columns::CONFIDENCE;
 use crate::page::{facts, style};

@@ -24,8 +24,8 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use study::evaluation::{CaseUse, Claim, Comparison, JudgementLine, TableRow};
 use figures::FigureFile;
+use study::evaluation::{CaseUse, Claim, Comparison, JudgementLine, TableRow};
 
 pub use ablation::Ablation;
 pub use facts::Facts;

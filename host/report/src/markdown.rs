@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use std::iter::Peekable;
 use std::slice;
 
-use study::evaluation::{Claim, Judgement, JudgementLine};
 use figures::{Cell, Column, Figure, Row, Table, row};
+use study::evaluation::{Claim, Judgement, JudgementLine};
 
 use crate::facts::HASH;
 use crate::table::{Line, LineKind, PaperTable, tables};

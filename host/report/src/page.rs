@@ -1,11 +1,11 @@
 //! `page`: layout of the report page: at a glance, the claims, tables with their plots, maps, every
 //! comparison, every parameter.
 
-use study::statistics::stars;
-use study::evaluation::{Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine};
 use figures::numbers::{plain, signed};
 use figures::{Cell, Column, Page, Row, Table, Theme, dark_colors, row};
 use maud::{Markup, html};
+use study::evaluation::{Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine};
+use study::statistics::stars;
 
 use crate::map::{CHANCE_PASS_COLOR, LOST_PASS_COLOR, SHADES};
 use crate::plot::{TablePlot, plots};

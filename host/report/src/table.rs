@@ -4,13 +4,13 @@
 //! The same lines become HTML here and Markdown in `markdown`. A difference carries Holm's p over the
 //! scenarios of its table.
 
-use study::statistics::stars;
-use study::evaluation::{Comparison, TableRow};
 use brain::Approach;
 use figures::numbers::{p, plain, printed, signed};
 use figures::{Cell, Column, Row, Table};
 use hil_sim::Scenario;
 use maud::{Markup, html};
+use study::evaluation::{Comparison, TableRow};
+use study::statistics::stars;
 
 use crate::columns::{ColumnValue, MeasureColumn, columns};
 use crate::{Report, labels};

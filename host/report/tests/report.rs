@@ -2,10 +2,12 @@
 //! in for ours, a little changed.
 
 use arena::TrialConfig;
-use study::evaluation::{Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine, TableRow, compare, paper, with_paper};
 use brain::Approach;
 use hil_sim::{Configuration, Scenario};
 use report::{Facts, Map, Report, SQUARE_MM};
+use study::evaluation::{
+    Claim, ClaimVerdict, Comparison, Held, Judgement, JudgementLine, TableRow, compare, paper, with_paper,
+};
 
 /// Rows that could be ours: the paper's, some of them changed.
 fn ours() -> Vec<TableRow> {

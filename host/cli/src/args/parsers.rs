@@ -4,7 +4,6 @@
 use std::net::{SocketAddr, ToSocketAddrs as _};
 
 use arena::Profile;
-use study::store::Shard;
 use casebase::GoalEnd;
 use firmware_build::{Board, ImageBody, Program, boards};
 use hil_sim::small_size::network::RefereeKind;
@@ -13,6 +12,7 @@ use host::strategy::Team;
 use protocol::RobotId;
 use rules::{Colour, League};
 use ssl::net::addresses;
+use study::store::Shard;
 
 /// A Small Size league by its name.
 pub(crate) fn league(name: &str) -> Result<League, String> {

@@ -10,8 +10,8 @@ use std::process::ExitCode;
 use case_tools::coverage::{Area, CellCounters, Cells, Counters, VERDICTS};
 use casebase::PointMm;
 use clap::{Args, ValueEnum};
-use figures::{HeatMap, Scale, Theme, heat_maps};
 use feed::recording::problem_line;
+use figures::{HeatMap, Scale, Theme, heat_maps};
 use serde_json::{Value, json};
 
 use super::survey::{SurveyArgs, Trial, class, percent, region};

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
-use study::store::EvaluationError;
 use feed::recording::{OpenLibrary, collect};
 use study::learning::{Change, RecordedDraft, draft};
+use study::store::EvaluationError;
 
 use crate::Failure;
 use crate::args::LibraryArgs;

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
-use study::store::EvaluationError;
 use feed::recording::{OpenLibrary, collect};
+use study::store::EvaluationError;
 
 use crate::Failure;
 use crate::args::LibraryArgs;

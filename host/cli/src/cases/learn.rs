@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use study::store::{EvaluationError, Shard};
 use clap::Args;
 use feed::recording::{OpenLibrary, collect};
 use feed::refusals;
 use study::learning::{
     JournalPlayer, Kind, LearnError, LearnSettings, Learned, Worlds, learn, learn_matches,
 };
+use study::store::{EvaluationError, Shard};
 
 use crate::Failure;
 use crate::args::{LibraryArgs, VERSION, parsers};

@@ -8,9 +8,9 @@ use clap::Args;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::strategy::{ROUND_1, Team};
 use rules::League;
-use study::store::{EvaluationError, Experiment, csv_hash, to_csv};
 use study::matches::MatchTeam;
 use study::scenes::{SceneEffect, ScenePlan, scene_effects, scene_table};
+use study::store::{EvaluationError, Experiment, csv_hash, to_csv};
 
 use super::report::insert;
 use super::work::{self, write};

@@ -1,12 +1,12 @@
 //! `bars`: bar charts of frequencies with their intervals: outcomes, backing up, cases; a panel a scenario.
 
-use study::statistics::Interval;
-use study::evaluation::{Measure, TableRow};
 use figures::numbers::plain;
 use figures::{
     AXIS_HEIGHT, Anchor, Axis, Figure, Font, PANEL_WIDTH, Panel, Shape, Svg, Theme, mark_style, whisker,
 };
 use hil_sim::Scenario;
+use study::evaluation::{Measure, TableRow};
+use study::statistics::Interval;
 
 use super::{Entry, entries, keys, scenarios};
 use crate::columns::interval;

@@ -1,8 +1,8 @@
 //! `dots`: dot plots of means: possessions and times with Student's intervals; a panel a measure.
 
-use study::evaluation::Measure;
 use figures::numbers::plain;
 use figures::{Dot, DotRow, Figure, Panel, Shape, dot_axis, dot_panel};
+use study::evaluation::Measure;
 
 use super::{Entry, entries, keys, scenarios};
 use crate::columns::interval;

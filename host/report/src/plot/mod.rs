@@ -8,9 +8,9 @@ mod dots;
 mod effects;
 mod uses;
 
-use study::evaluation::{Measure, TableRow};
 use figures::{Figure, Key, Shape};
 use hil_sim::Scenario;
+use study::evaluation::{Measure, TableRow};
 
 use crate::{Report, labels};
 use bars::BarChart;

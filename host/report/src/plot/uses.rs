@@ -3,8 +3,8 @@
 
 use arena::CycleEnd;
 use arena::Profile;
-use study::evaluation::CaseUse;
 use figures::{AXIS_HEIGHT, Anchor, Axis, Figure, Font, Key, PANEL_WIDTH, Panel, Shape, Svg, Theme};
+use study::evaluation::CaseUse;
 
 use crate::{Report, labels};
 
