@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     fn outcome(name: &'static str, failure: Option<Failure>) -> Outcome {
-        let took = Took { wall: Duration::from_secs(83), processor: Some(Duration::from_secs(120)) };
+        let took = Took { wall: Duration::from_secs(83), processor: Some(Duration::from_mins(2)) };
         Outcome { name, took, failure }
     }
 

@@ -57,7 +57,8 @@ pub(crate) fn usage() -> String {
     let mut text = String::new();
     for task in &TASKS {
         let head = format!("{} {}", task.name, task.takes);
-        text += &format!("  {}\n                 {}\n", head.trim_end(), task.what);
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "  {}\n                 {}", head.trim_end(), task.what);
     }
     text
 }

@@ -241,7 +241,11 @@ impl Table {
         let mut text = String::new();
         for column in &self.columns {
             let head = column.head_and_unit();
-            text += &if head.is_empty() { "| ".to_owned() } else { format!("| {head} ") };
+            text += "| ";
+            if !head.is_empty() {
+                text += &head;
+                text += " ";
+            }
         }
         text += "|\n";
         for column in &self.columns {

@@ -35,7 +35,7 @@ pub enum NetError {
     /// No interface could join the group.
     #[error(
         "no interface could join {group}{}; is a network up? On this machine alone: `{LOOPBACK_HINT}`",
-        tried.iter().map(|(name, error)| format!("; {name}: {error}")).collect::<String>()
+        listed(tried)
     )]
     NotJoined {
         /// Address of the group.
@@ -159,4 +159,9 @@ fn route_hint(to: &SocketAddr) -> String {
     } else {
         "is the network up, and the address right?".to_owned()
     }
+}
+
+/// Each interface with its error, after a semicolon.
+fn listed(tried: &[(String, io::Error)]) -> String {
+    tried.iter().fold(String::new(), |text, (name, error)| text + "; " + name + ": " + &error.to_string())
 }
