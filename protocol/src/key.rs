@@ -62,19 +62,21 @@ impl TeamKey {
     }
 
     fn derived(&self, purpose: u8, robot: RobotId) -> Key {
-        let half = |half: u8| {
-            let mut hasher = SipHasher24::new_with_key(&self.0);
-            hasher.write(LABEL);
-            hasher.write(&[purpose, robot.number(), half]);
-            hasher.finish().to_le_bytes()
-        };
-        let ([a, b, c, d, e, f, g, h], [i, j, k, l, m, n, o, p]) = (half(0), half(1));
-        Key([a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p])
+        let mut derived = [0; 16];
+        for (half, bytes) in (0_u8..).zip(derived.chunks_exact_mut(8)) {
+            let mut text = [0; LABEL.len() + 3];
+            let (label, rest) = text.split_at_mut(LABEL.len());
+            label.copy_from_slice(LABEL);
+            rest.copy_from_slice(&[purpose, robot.number(), half]);
+            bytes.copy_from_slice(&Key(self.0).tag(&text).to_le_bytes());
+        }
+        Key(derived)
     }
 }
 
 impl Key {
     /// SipHash-2-4 of these bytes.
+    #[inline(never)]
     pub(crate) fn tag(&self, bytes: &[u8]) -> u64 {
         let mut hasher = SipHasher24::new_with_key(&self.0);
         hasher.write(bytes);

@@ -30,6 +30,8 @@ impl<'a> Station<'a> {
     }
 
     /// As [`Station::new`], with keys of its own.
+    // In its caller it would be built on the stack, which the caller then keeps: 5 kB of a robot's task.
+    #[inline(never)]
     pub fn with_keys(now: Instant, config: &BrainConfig, base: CaseBase<'a>, keys: RobotKeys) -> Self {
         Self {
             brain: Brain::new(now, config, base),
