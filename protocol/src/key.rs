@@ -62,19 +62,21 @@ impl TeamKey {
     }
 
     fn derived(&self, purpose: u8, robot: RobotId) -> Key {
-        let mut key = [0; 16];
-        for (half, bytes) in (0..).zip(key.as_chunks_mut::<8>().0) {
-            let mut hasher = SipHasher24::new_with_key(&self.0);
-            hasher.write(DERIVATION_LABEL);
-            hasher.write(&[purpose, robot.number(), half]);
-            *bytes = hasher.finish().to_le_bytes();
+        let mut derived = [0; 16];
+        for (half, bytes) in (0_u8..).zip(derived.chunks_exact_mut(8)) {
+            let mut text = [0; DERIVATION_LABEL.len() + 3];
+            let (label, rest) = text.split_at_mut(DERIVATION_LABEL.len());
+            label.copy_from_slice(DERIVATION_LABEL);
+            rest.copy_from_slice(&[purpose, robot.number(), half]);
+            bytes.copy_from_slice(&Key(self.0).tag(&text).to_le_bytes());
         }
-        Key(key)
+        Key(derived)
     }
 }
 
 impl Key {
     /// SipHash-2-4 of these bytes.
+    #[inline(never)]
     pub(crate) fn tag(&self, bytes: &[u8]) -> u64 {
         let mut hasher = SipHasher24::new_with_key(&self.0);
         hasher.write(bytes);

@@ -110,7 +110,10 @@ pub struct BallSight {
 }
 
 /// Orders of the brain to its body for the coming step.
+// In memory 0 and 1 stay free for a mailbox without an order: a static with mailboxes is then all zeros, and has
+// no 2 kB of initial values in flash.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[repr(u8)]
 pub enum ActuatorFrame {
     /// Orders to a walking robot.
     Legged {
@@ -118,7 +121,7 @@ pub enum ActuatorFrame {
         walk: Twist<Body>,
         /// A primitive to start, unless one is running.
         primitive: LeggedPrimitive,
-    },
+    } = 2,
     /// A robot on omnidirectional wheels.
     Omni {
         /// Rim speed of each wheel, m/s.

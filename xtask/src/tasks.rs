@@ -1,6 +1,8 @@
 //! `tasks`: table of xtask commands. One row per command: its name, its arguments, its effect, and its
 //! function.
 
+use std::fmt::Write as _;
+
 use crate::context::{Context, Failure, run};
 use crate::{
     bench, budgets, cost, docs, emulate, evaluation, example_cost, game_cost, page, pictures, release,

@@ -37,7 +37,7 @@ struct Since {
     /// Whether it has retrieved.
     retrieved: bool,
     /// A gameplay has started or ended.
-    turned: bool,
+    gameplay_changed: bool,
 }
 
 /// A robot's brain: sans-IO, all times are arguments.
@@ -64,7 +64,7 @@ pub struct Brain<'a> {
     beacon_due: bool,
     /// Inputs since its last step.
     since: Since,
-    /// Number of steps that may still reuse the path before a step must plan: up to [`ONWARDS_MOST`].
+    /// Number of steps that may still reuse the path before a step must plan: up to [`PATH_REUSES_MAX`].
     reuses_left: u8,
     spoken: Spoken,
     /// Its newest decision, with the problem.
@@ -97,7 +97,7 @@ impl<'a> Brain<'a> {
             actuators: None,
             beacon_due: false,
             since: Since::default(),
-            reuses_left: ONWARDS_MOST,
+            reuses_left: PATH_REUSES_MAX,
             spoken: Spoken::default(),
             explained: None,
         }
@@ -160,7 +160,7 @@ impl<'a> Brain<'a> {
         let since = core::mem::take(&mut self.since);
         let received_most = if self.actuation.winds() { RECEIVED_MOST_WINDING } else { RECEIVED_MOST };
         let is_busy = since.retrieved || since.received > received_most;
-        if since.turned {
+        if since.gameplay_changed {
             Intent::Stand { face: None }
         } else if !self.has_short_steps() {
             self.act(now)
@@ -168,7 +168,7 @@ impl<'a> Brain<'a> {
             self.reuses_left -= 1;
             Intent::KeepPath
         } else {
-            self.reuses_left = ONWARDS_MOST.min(self.reuses_left + 1);
+            self.reuses_left = PATH_REUSES_MAX.min(self.reuses_left + 1);
             self.act(now)
         }
     }
@@ -251,4 +251,4 @@ const RECEIVED_MOST_WINDING: u8 = 4;
 /// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual
 /// beacons between them, twice. Each step that plans adds one again, so that on a radio channel that is
 /// always full every second step plans.
-const ONWARDS_MOST: u8 = 10;
+const PATH_REUSES_MAX: u8 = 10;

@@ -88,7 +88,7 @@ mod tests {
     const AT: WirePoint = WirePoint { x: 1000, y: 0 };
 
     #[test]
-    fn who_took_our_restart_keeps_off_the_ball_whatever_it_is_reported_to_do_with_it() {
+    fn kicker_of_a_restart_avoids_the_ball_until_another_touch() {
         let mut b = belief((0.0, 0.0, 0.0), (0.12, 0.0));
         b.game.double_touch_blocked = true;
         let kick = KickOrder::Flat(400);

@@ -308,7 +308,7 @@ impl Execution {
                     return Verdict::Done;
                 }
                 let face = face_ball(belief, to);
-                Verdict::Running(Intent::Walk { to, face, avoiding_of_ball: true })
+                Verdict::Running(Intent::Walk { to, face, avoid_ball: true })
             }
             Action::Turn(target) => {
                 let heading = match target {
@@ -409,7 +409,7 @@ impl Execution {
             return self.aim_ahead(scene).unwrap_or(Intent::Stand { face: None });
         }
         let to = self.place.unwrap_or_else(|| scene.place_of(self.part));
-        Intent::Walk { to, face: face_ball(scene.belief, to), avoiding_of_ball: true }
+        Intent::Walk { to, face: face_ball(scene.belief, to), avoid_ball: true }
     }
 
     /// Turning for the pass that waits for its receiver.

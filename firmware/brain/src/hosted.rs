@@ -177,12 +177,12 @@ fn received_at(now: Instant, age: Duration) -> Instant {
 
 /// Whether the ball has left its place `lay`.
 fn gone(belief: &Belief, lay: Point<Field>) -> bool {
-    belief.ball.is_none_or(|ball| ball.position.distance(lay) > LEFT)
+    belief.ball.is_none_or(|ball| ball.position.distance(lay) > RESTART_BALL_MOVED_M)
 }
 
 /// The ball has left, m: in play after 0.05 m by the rules, and the dribbler that located it errs by a
 /// centimetre.
-const LEFT: f32 = 0.06;
+const RESTART_BALL_MOVED_M: f32 = 0.06;
 
 #[cfg(test)]
 mod tests {
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_hold_until_others_come_or_another_host_does_and_those_of_others_are_ignored() {
+    fn drive_limits_hold_until_new_ones_or_another_host_come_others_limits_are_ignored() {
         let mut hosted = Hosted::new(id(3));
         let mut belief = Belief::new(League::DivisionB);
         let sensors = nothing();
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn the_kicker_of_our_free_kick_is_double_touch_blocked_until_another_robot_has_touched_the_ball() {
+    fn the_kicker_of_our_free_kick_may_not_touch_the_ball_again_before_another_robot() {
         let mut hosted = Hosted::new(id(3));
         let mut held = with_ball(0.0);
         let sensors = SensorFrame { ball_contact: true, ..nothing() };

@@ -17,10 +17,10 @@ pub struct Station<'a> {
     brain: Brain<'a>,
     link: Link,
     /// When the brain sent last, and when handshakes were sent to teammates last.
-    spoke: Option<Instant>,
-    greeted: Option<Instant>,
+    last_sent: Option<Instant>,
+    last_handshake: Option<Instant>,
     /// Something has happened since the brain had no more messages.
-    stirred: bool,
+    has_new_input: bool,
 }
 
 impl<'a> Station<'a> {
@@ -30,13 +30,15 @@ impl<'a> Station<'a> {
     }
 
     /// As [`Station::new`], with keys of its own.
+    // In its caller it would be built on the stack, which the caller then keeps: 5 kB of a robot's task.
+    #[inline(never)]
     pub fn with_keys(now: Instant, config: &BrainConfig, base: CaseBase<'a>, keys: RobotKeys) -> Self {
         Self {
             brain: Brain::new(now, config, base),
             link: Link::new(config.team, config.robot, keys, config.epoch),
-            spoke: None,
-            greeted: Some(now),
-            stirred: true,
+            last_sent: None,
+            last_handshake: Some(now),
+            has_new_input: true,
         }
     }
 
@@ -46,7 +48,7 @@ impl<'a> Station<'a> {
     #[inline(never)]
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
         if !self.brain.has_short_steps() {
-            self.stirred = true;
+            self.has_new_input = true;
         }
         let led_by = self.link.host_epoch();
         match self.link.open(now, packet) {
@@ -63,38 +65,38 @@ impl<'a> Station<'a> {
 
     /// Handles a sensor frame: one brain step.
     pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
-        self.stirred = true;
+        self.has_new_input = true;
         self.brain.handle_sensors(now, sensors);
     }
 
     /// Handles the deadline announced by [`Station::poll_timeout`].
     pub fn handle_timeout(&mut self, now: Instant) {
-        self.stirred = true;
+        self.has_new_input = true;
         self.brain.handle_timeout(now);
     }
 
     /// The next packet to send. Call after every `handle_…` until `None`.
     pub fn poll_packet(&mut self, now: Instant) -> Option<Packet> {
-        if !self.stirred {
+        if !self.has_new_input {
             return None;
         }
         let packet = self.next_packet(now);
-        self.stirred = packet.is_some();
+        self.has_new_input = packet.is_some();
         packet
     }
 
     fn next_packet(&mut self, now: Instant) -> Option<Packet> {
         let Some(mut message) = self.brain.poll_message(now) else {
             // One message a step, where steps are short: sealing costs time, and the next step comes soon.
-            let waits = self.spoke == Some(now)
-                && self.greeted.is_some_and(|last| now.since(last) < SHAKE_HANDS_WITHIN);
+            let waits = self.last_sent == Some(now)
+                && self.last_handshake.is_some_and(|last| now.since(last) < SHAKE_HANDS_WITHIN);
             let handshake = if waits { None } else { self.link.poll_handshake(now) };
             if handshake.is_some() {
-                self.greeted = Some(now);
+                self.last_handshake = Some(now);
             }
             return handshake;
         };
-        self.spoke = Some(now);
+        self.last_sent = Some(now);
         if let TeamMessage::Telemetry(telemetry) = &mut message {
             self.link.report(now, telemetry);
         }

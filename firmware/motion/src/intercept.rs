@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn in_bounded_time_a_interception_point_is_mostly_the_soonest_and_at_most_seven_places_later() {
+    fn in_bounded_time_the_interception_is_mostly_the_soonest_or_at_most_7_places_later() {
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(3);
         let mut within = |range: f32| ((rng.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range;
         let (mut same, mut later, mut none) = (0, 0, 0);

@@ -10,7 +10,7 @@ use brain::{BrainConfig, Station};
 use casebase::CaseBase;
 use embassy_sync::channel::TryReceiveError;
 use embassy_time::with_deadline;
-use protocol::frame::{RobotKeys, TeamKey};
+use protocol::frame::RobotKeys;
 use protocol::journal::Writer;
 use protocol::{Duration, Instant};
 
@@ -22,7 +22,9 @@ use crate::recorded::Recorded;
 
 /// The brain's task: starts the boot epoch with its first poll.
 pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) -> ! {
-    brain_with_keys(config, base, TeamKey::ZERO.of_robot(config.robot), boxes).await
+    // Not by way of `brain_with_keys`: its future would lie on the stack for as long as the task runs, 6 kB.
+    let mut station = Station::new(now(), config, base);
+    think(&mut station, boxes).await
 }
 
 /// Runs as [`brain()`] does, with keys of its own.

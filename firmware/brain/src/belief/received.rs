@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn the_light_barriers_flicker_is_bridged_while_the_ball_is_displayed_at_the_dribbler() {
+    fn break_beam_flicker_is_bridged_while_the_ball_is_seen_at_the_dribbler() {
         let mut belief = Belief::new(League::DivisionB);
         belief.show(Instant(0), &snapshot(Instant(0), (95, 0)), &sensors(true));
         assert!(belief.holds_ball && belief.contact());

@@ -34,7 +34,7 @@ pub enum Intent {
         /// Heading at the end.
         face: Angle,
         /// Go around the ball too.
-        avoiding_of_ball: bool,
+        avoid_ball: bool,
     },
     /// Turn on the spot, with the ball or without.
     Turn {

@@ -72,7 +72,7 @@ impl Brain<'_> {
                     self.adopt(now, &state);
                 }
                 // This step ends a gameplay, and may begin the next: the robot stands in it.
-                self.since.turned = false;
+                self.since.gameplay_changed = false;
                 return Intent::Stand { face: None };
             }
             ReuseRequest::Nothing => {}

@@ -41,7 +41,7 @@ impl Brain<'_> {
             Decision::Play(_) | Decision::Closed(_) => {}
         }
         if changed == CycleEvent::Gameplay {
-            self.since.turned = true;
+            self.since.gameplay_changed = true;
             self.begin_part(now);
         }
     }

@@ -132,7 +132,7 @@ fn a_body_that_has_stopped_is_not_driven_on_by_the_ramp() {
 }
 
 #[test]
-fn from_50_to_100_ms_of_silence_the_limit_shrinks_and_the_first_frame_after_a_gap_moves_it_again() {
+fn from_50_to_100_ms_of_silence_the_limit_shrinks_and_the_next_frame_restores_it() {
     let mut governor = driving(600, Phase::Run);
     let received = Instant(600_000);
     let host = Some(Hearing { frame: Some(received), command: Some(received) });
@@ -169,7 +169,7 @@ fn moves_again_after(silence: u64) -> Option<u64> {
 }
 
 #[test]
-fn gaps_end_with_the_first_frame_and_silences_of_half_a_second_with_half_a_second_of_hearing() {
+fn gaps_end_with_the_first_frame_and_silences_of_0_5_s_after_0_5_s_of_frames() {
     for gap in [60, 100, 150, 300, 490] {
         assert_eq!(moves_again_after(gap), Some(0), "{gap} ms");
     }
@@ -179,7 +179,7 @@ fn gaps_end_with_the_first_frame_and_silences_of_half_a_second_with_half_a_secon
 }
 
 #[test]
-fn a_robot_that_boots_is_armed_half_a_second_after_the_first_frame_whatever_gaps_there_are() {
+fn a_robot_that_boots_is_armed_0_5_s_after_the_first_frame_whatever_the_gaps() {
     let mut governor = Governor::new(League::DivisionB);
     let (mut armed, mut frame) = (None, None);
     for t in (0..2000_u64).step_by(10) {

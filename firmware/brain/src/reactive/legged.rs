@@ -222,7 +222,7 @@ fn support(belief: &Belief, to: Point<Field>) -> Intent {
     if belief.pose.position.distance(to) < SUPPORT_TOLERANCE {
         return Intent::Stand { face: Some(face_ball(belief, belief.pose.position)) };
     }
-    Intent::Walk { to, face: face_ball(belief, to), avoiding_of_ball: true }
+    Intent::Walk { to, face: face_ball(belief, to), avoid_ball: true }
 }
 
 /// The opponent that is near the ball and on the path of a kick towards the goal.
@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn it_makes_way_while_a_teammate_holds_the_ball_and_goes_for_it_again_when_it_has_left() {
+    fn it_makes_way_while_a_teammate_holds_the_ball_and_goes_for_a_ball_that_has_left() {
         let beacon = |status| Beacon {
             pose: WirePose::default(),
             ball: None,

@@ -63,7 +63,7 @@ fn the_parts_of_a_snapshot_may_come_in_any_order_and_twice() {
 }
 
 #[test]
-fn who_is_missing_in_a_whole_snapshot_has_left_and_who_is_in_a_lost_part_stays_for_a_moment() {
+fn a_robot_missing_in_a_whole_snapshot_has_left_one_in_a_lost_part_stays_a_while() {
     let mut snapshot = HostSnapshot::new(me());
     let theirs = [robot(Side::Theirs, 1, 0, 0), robot(Side::Theirs, 2, 0, 0)];
     snapshot.handle_part(Instant(0), &part(1, 0, &theirs[..1]));

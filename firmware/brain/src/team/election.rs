@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn no_life_proposes_what_another_has_proposed_whatever_it_has_received() {
+    fn no_boot_epoch_proposes_a_cycle_that_another_epoch_has_proposed() {
         let mut proposed = [0_u32; 4];
         for (boot_epoch, newest) in (5..9).zip(&mut proposed) {
             let mut known = None;

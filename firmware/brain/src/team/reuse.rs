@@ -58,7 +58,7 @@ fn adapt(scene: &ActionScene<'_>, execution: &Execution) -> Intent {
         return Intent::Stand { face: None };
     }
     let to = scene.place_of(execution.part());
-    Intent::Walk { to, face: face_ball(scene.belief, to), avoiding_of_ball: true }
+    Intent::Walk { to, face: face_ball(scene.belief, to), avoid_ball: true }
 }
 
 /// At its adapted position, facing the ball. For the robot that gets the ball, "next to the ball" is enough

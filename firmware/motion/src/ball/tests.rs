@@ -97,7 +97,7 @@ fn what_is_no_number_rests() {
 }
 
 #[test]
-fn models_of_the_wire_are_taken_with_either_sign_and_refused_where_no_ball_is_like_that() {
+fn ball_models_of_the_wire_are_taken_with_either_sign_and_refused_if_impossible() {
     // Values of grSim and of ER-Force.
     assert_eq!(
         BallModel::from_wire(-14.0, -0.7, 0.7),

@@ -75,7 +75,7 @@ fn with_drag_it_arrives_at_rest_and_its_states_are_each_others_derivatives() {
 }
 
 #[test]
-fn without_drag_the_limits_hold_as_they_are_reported() {
+fn motion_without_drag_keeps_the_documented_limits() {
     let limits = FreeLimits { speed: 2.0, acceleration: 3.0, braking: 4.0 };
     for (from, velocity, to) in tasks(2_000) {
         let motion = limits.plan(from, velocity, to);
@@ -92,7 +92,7 @@ fn without_drag_the_limits_hold_as_they_are_reported() {
 }
 
 #[test]
-fn with_drag_push_and_speed_hold_as_they_are_reported() {
+fn motion_with_drag_keeps_the_documented_push_and_speed() {
     let limits = DragLimits::default();
     for (from, velocity, to) in tasks(2_000) {
         let motion = limits.plan(from, velocity, to);

@@ -219,7 +219,7 @@ pub enum LibraryError {
 /// A line for each error among these findings.
 fn errors(findings: &[Finding]) -> String {
     let errors = findings.iter().filter(|finding| finding.severity == Severity::Error);
-    errors.map(|finding| format!("  {finding}\n")).collect()
+    errors.fold(String::new(), |text, finding| text + "  " + &finding.to_string() + "\n")
 }
 
 /// Names of the built-in leagues.

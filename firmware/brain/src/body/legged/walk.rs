@@ -22,11 +22,11 @@ pub fn actuate(now: Instant, belief: &Belief, teammates: &Teammates, intent: Int
             let limit = if belief.holds_ball { CARRY_TURN_RATE } else { TURN_RATE };
             walk(Twist { linear: Vector::default(), angular: turn(pose, heading, limit) })
         }
-        Intent::Walk { to, face, avoiding_of_ball } => {
+        Intent::Walk { to, face, avoid_ball } => {
             // Adapted positions may lie outside (they are never clamped): the body stays on the field
             // surface.
             let to = belief.league().field().clamp(to, SURFACE);
-            let way_point = around(now, belief, teammates, to, avoiding_of_ball);
+            let way_point = around(now, belief, teammates, to, avoid_ball);
             let far = pose.position.distance(to) > FACE_END_WITHIN;
             let heading = if far { pose.position.direction_to(way_point) } else { face };
             walk(Twist { linear: step_to(pose, way_point, to), angular: turn(pose, heading, TURN_RATE) })
@@ -87,7 +87,7 @@ fn around(
     belief: &Belief,
     teammates: &Teammates,
     to: Point<Field>,
-    avoiding_of_ball: bool,
+    avoid_ball: bool,
 ) -> Point<Field> {
     let path = Segment::new(belief.pose.position, to);
     let others = teammates.present(now).map(|(_, teammate)| teammate.pose().position);
@@ -99,7 +99,7 @@ fn around(
         // A robot on the target itself cannot be walked around.
         .filter(|robot| robot.distance(to) > ROBOT_CLEARANCE)
         .map(|robot| (robot, ROBOT_CLEARANCE));
-    let ball = belief.ball.filter(|_| avoiding_of_ball).map(|ball| (ball.position, BALL_CLEARANCE));
+    let ball = belief.ball.filter(|_| avoid_ball).map(|ball| (ball.position, BALL_CLEARANCE));
     let first = robots
         .chain(ball)
         .map(|(at, clearance)| (at, clearance, path.share_of(at)))
@@ -160,11 +160,10 @@ mod tests {
     #[test]
     fn straight_ahead_is_walked_at_full_speed_and_no_faster() {
         let to = Point::new(2.0, 0.0);
-        let twist = walking(&at(0.0, 0.0), Intent::Walk { to, face: Angle::ZERO, avoiding_of_ball: false });
+        let twist = walking(&at(0.0, 0.0), Intent::Walk { to, face: Angle::ZERO, avoid_ball: false });
         assert!((twist.linear.x() - WALK_FORWARD).abs() < 1e-6);
         let side = Point::new(0.0, 0.3);
-        let twist =
-            walking(&at(0.0, 0.0), Intent::Walk { to: side, face: Angle::ZERO, avoiding_of_ball: false });
+        let twist = walking(&at(0.0, 0.0), Intent::Walk { to: side, face: Angle::ZERO, avoid_ball: false });
         assert!((twist.linear.y() - WALK_SIDEWAYS).abs() < 1e-6);
     }
 
@@ -173,7 +172,7 @@ mod tests {
         let mut belief = at(0.0, 0.0);
         let _ = belief.opponents.push(Point::new(0.5, 0.1));
         let to = Point::new(2.0, 0.0);
-        let twist = walking(&belief, Intent::Walk { to, face: Angle::ZERO, avoiding_of_ball: false });
+        let twist = walking(&belief, Intent::Walk { to, face: Angle::ZERO, avoid_ball: false });
         assert!(twist.linear.y() < -0.05, "{twist:?}");
     }
 
@@ -182,7 +181,7 @@ mod tests {
         let mut belief = at(0.0, 0.0);
         let _ = belief.opponents.push(Point::new(1.0, 0.1));
         let to = Point::new(1.0, 0.0);
-        let twist = walking(&belief, Intent::Walk { to, face: Angle::ZERO, avoiding_of_ball: false });
+        let twist = walking(&belief, Intent::Walk { to, face: Angle::ZERO, avoid_ball: false });
         assert!(twist.linear.y().abs() < 1e-6);
     }
 

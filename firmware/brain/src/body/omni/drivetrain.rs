@@ -77,8 +77,8 @@ impl Drivetrain {
                 };
                 self.follow(belief, step, &drive)
             }
-            Intent::Walk { to, face, avoiding_of_ball } => {
-                let drive = if avoiding_of_ball { Drive::avoiding(to, face) } else { Drive::bold(to, face) };
+            Intent::Walk { to, face, avoid_ball } => {
+                let drive = if avoid_ball { Drive::avoiding(to, face) } else { Drive::bold(to, face) };
                 self.follow(belief, step, &drive)
             }
             Intent::Drive(drive) => self.follow(belief, step, &drive),

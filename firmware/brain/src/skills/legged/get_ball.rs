@@ -34,12 +34,12 @@ pub fn get_ball(belief: &Belief, exit_heading: Option<Angle>) -> Step {
             in_time + (exit_heading - direct).abs() / CARRY_TURN_RATE,
         )
     {
-        return Step::Running(Intent::Walk { to, face: exit_heading, avoiding_of_ball: true });
+        return Step::Running(Intent::Walk { to, face: exit_heading, avoid_ball: true });
     }
     // No slowing down before the ball is in reach: the walk would end beyond that.
     let to = interception_point - Vector::polar(WALK_UP_TO, direct);
     let face = if distance < NEAR { pose.position.direction_to(ball.position) } else { direct };
-    Step::Running(Intent::Walk { to, face, avoiding_of_ball: false })
+    Step::Running(Intent::Walk { to, face, avoid_ball: false })
 }
 
 /// Where to stand for a ball that will stop, so as to face `exit_heading` with it at once; `None` where
@@ -153,11 +153,10 @@ mod tests {
     #[test]
     fn with_time_it_walks_around_to_face_onwards() {
         let b = belief((0.6, 0.0), (0.0, 0.0), (0.6, 0.0));
-        let Step::Running(Intent::Walk { to, avoiding_of_ball, .. }) = get_ball(&b, Some(Angle::HALF_TURN))
-        else {
+        let Step::Running(Intent::Walk { to, avoid_ball, .. }) = get_ball(&b, Some(Angle::HALF_TURN)) else {
             panic!("walks")
         };
-        assert!(avoiding_of_ball && to.x() > 0.7);
+        assert!(avoid_ball && to.x() > 0.7);
         // With an opponent at the ball it walks straight to it.
         let mut contested = b.clone();
         let _ = contested.opponents.push(Point::new(1.0, 0.0));

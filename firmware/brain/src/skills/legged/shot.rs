@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_gap_it_waits_turned_to_the_far_post_and_under_pressure_takes_what_there_is() {
+    fn without_a_gap_it_waits_facing_the_far_post_and_under_pressure_shoots_anyway() {
         // The goalkeeper is still crossing: near post open by a little.
         let waiting = belief(1.4, 0.6, &[(2.05, 0.33)]);
         let Some(Intent::Turn { heading }) = attempt(&waiting, GoalEnd::Positive, true) else {

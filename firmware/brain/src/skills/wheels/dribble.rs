@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_that_two_robots_dispute_is_kicked_as_it_is_touched_but_not_at_the_own_goal() {
+    fn a_disputed_ball_is_kicked_as_it_is_touched_but_not_at_the_own_goal() {
         let disputed = |heading: f32, ms: u64| {
             let mut b = belief((0.0, 0.0, heading), (BALL_AT, 0.0));
             let snapshot = HostSnapshot::new(RobotId::new(1).unwrap());

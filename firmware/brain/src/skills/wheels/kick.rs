@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_still_turns_past_its_aim_does_not_touch_the_ball_with_the_kicker_armed() {
+    fn a_robot_that_turns_past_its_aim_does_not_arm_the_kicker() {
         let mut b = belief((-BALL_AT - 0.01, 0.0, 0.0), (0.0, 0.0));
         b.angular = 2.0;
         assert_eq!(drive(kick(&b, Point::new(3.0, 0.0), FLAT)).kick, OmniKick::None);

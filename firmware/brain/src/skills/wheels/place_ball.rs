@@ -408,7 +408,7 @@ mod tests {
     use crate::skills::wheels::testing::belief;
 
     #[test]
-    fn a_placer_that_feels_no_ball_where_one_is_displayed_backs_off_and_tries_again() {
+    fn a_placer_that_feels_no_ball_where_one_is_seen_backs_off_and_tries_again() {
         // A hidden ball is believed at the dribbler.
         let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
         let mut placement = Placement::default();

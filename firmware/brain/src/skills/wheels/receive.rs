@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn before_the_pass_its_dribbler_waits_at_the_interception_point_point_facing_the_ball() {
+    fn before_the_pass_its_dribbler_waits_at_the_ordered_place_facing_the_ball() {
         let waiting = drive(receive(&belief((1.0, 1.0, 0.0), (-1.0, 0.0)), Point::new(1.0, 0.0), None));
         assert!(waiting.to.distance(Point::new(1.0 + BALL_AT, 0.0)) < 1e-5, "{waiting:?}");
         assert!((waiting.face - Angle::HALF_TURN).abs() < 1e-5);

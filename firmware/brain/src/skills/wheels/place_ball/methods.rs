@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_is_kicked_off_a_wall_to_the_side_of_the_place_and_straight_into_corners_and_nets() {
+    fn a_ball_is_kicked_off_a_wall_beside_the_place_and_straight_into_corners_and_nets() {
         let field = League::DivisionB.field();
         let at = Point::new(0.0, 0.0);
         let kick = |ball: Point<Field>, tries: u8| {
