@@ -136,7 +136,7 @@ fn a_harmful_case_is_forgotten_and_nothing_else_is() {
 fn a_confirmed_change_that_lowers_the_validation_starts_is_refused() {
     // The rule turns over on validation starts: what helps elsewhere harms there.
     struct Turned;
-    impl<'u> Player<Unit<'u>> for Turned {
+    impl Player<Unit<'_>> for Turned {
         fn play(&mut self, units: &[Unit<'_>]) -> Result<Vec<Vec<LearningTrial>>, PlayError> {
             let one = |unit: &Unit<'_>| {
                 let turned = matches!(

@@ -97,8 +97,8 @@ fn test_items(lines: &[&str]) -> Vec<TestItem> {
         });
         if !line.trim_end().ends_with([';', '}']) {
             let indent = indent_of(line);
-            let closes = |line: &&str| line.trim_start().starts_with('}') && indent_of(line) == indent;
-            at += lines[at..].iter().position(|line| closes(&line)).unwrap_or(lines.len() - at - 1);
+            let closes = |line: &str| line.trim_start().starts_with('}') && indent_of(line) == indent;
+            at += lines[at..].iter().position(|line| closes(line)).unwrap_or(lines.len() - at - 1);
         }
         items.push(TestItem { first: first + 1, last: at + 1, file });
         at += 1;

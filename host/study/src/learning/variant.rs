@@ -35,7 +35,7 @@ pub enum VariantError {
 
 /// A line for each finding.
 fn lines(findings: &[Finding]) -> String {
-    findings.iter().map(|finding| format!("\n  {finding}")).collect()
+    findings.iter().fold(String::new(), |text, finding| text + "\n  " + &finding.to_string())
 }
 
 /// Answer of retrieval: the case's name and symmetry, and the robots that play it.
