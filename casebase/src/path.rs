@@ -1,8 +1,8 @@
 //! `path`: the free-path test: a ball path as the case describes it must be clear of opponents (Ros et al.
 //! 2009, §3.3.1).
 //!
-//! The ball runs through a sequence of legs, each a fuzzy set ([`Leg`]). With one opponent above the threshold
-//! in any leg the case is not applicable now. Lengths in mm, axes of the field.
+//! The ball runs through a sequence of legs, each a fuzzy set ([`Leg`]). With one opponent above the
+//! threshold in any leg the case is not applicable now. Lengths in mm, axes of the field.
 
 use crate::action::{Action, CaseRobot};
 use crate::case::Case;

@@ -21,8 +21,8 @@
 //!
 //! 1. [`tracking::Tracker`] merges the frame into the world and extrapolates it to now.
 //! 2. [`strategy::View::of`] turns the world so that the team attacks towards +x.
-//! 3. [`strategy::Coach::decide`] orders every robot by the referee's phase; a strategy in another program, or
-//!    a robot's test, may replace orders.
+//! 3. [`strategy::Coach::decide`] orders every robot by the referee's phase; a strategy in another program,
+//!    or a robot's test, may replace orders.
 //! 4. Each [`strategy::Order`] becomes a command; its kick is corrected by what was learned of the robot.
 //! 5. [`radio::Radio::offer`] packs snapshot and commands into frames.
 //!

@@ -2,8 +2,8 @@
 //! memory that a PC can read afterwards.
 //!
 //! `magic 4 "1-2J" | used 4 LE | records`; a record is `length u16 LE | postcard` of [`Record`]. The magic is
-//! written by the program that wants a journal; a robot that does not find it writes none. `used` counts the bytes of
-//! whole records. A memory that is full keeps what it has, and ends with [`Entry::Full`].
+//! written by the program that wants a journal; a robot that does not find it writes none. `used` counts the
+//! bytes of whole records. A memory that is full keeps what it has, and ends with [`Entry::Full`].
 
 use serde::{Deserialize, Serialize};
 

@@ -110,8 +110,8 @@ pub struct BallSight {
 }
 
 /// Orders of the brain to its body for the coming step.
-// In memory 0 and 1 stay free for a mailbox without an order: a static with mailboxes is then all zeros, and has
-// no 2 kB of initial values in flash.
+// In memory 0 and 1 stay free for a mailbox without an order: a static with mailboxes is then all zeros, and
+// has no 2 kB of initial values in flash.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum ActuatorFrame {

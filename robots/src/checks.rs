@@ -211,8 +211,8 @@ fn last_speed(of: &Description, path: &str) -> f32 {
 
 /// Smallest distance of the flat front from the centre, share of the radius (the simulator's limit).
 const FRONT_SHARE_MIN: f32 = 0.31;
-/// Largest condition of the wheels' matrix (rims' speed over the body's in the strongest direction against the
-/// weakest): beyond it there is a direction in which a robot cannot be controlled.
+/// Largest condition of the wheels' matrix (rims' speed over the body's in the strongest direction against
+/// the weakest): beyond it there is a direction in which a robot cannot be controlled.
 const CONDITION_MAX: f64 = 8.0;
 /// Condition above which one direction is driven weakly; teams' robots lie between 1.4 and 2.
 const CONDITION_GOOD: f64 = 3.0;

@@ -357,7 +357,7 @@ const KITS: [&str; 2] = ["board-kit", "stm32-kit"];
 const SAME_BITS: [&str; 9] =
     ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime", "hil-sim"];
 /// External crates that only compute: no files, sockets, clocks or threads.
-const PURE: [&str; 12] = [
+const PURE: [&str; 13] = [
     "nalgebra",
     "libm",
     "micromath",
@@ -368,6 +368,8 @@ const PURE: [&str; 12] = [
     "cobs",
     "zerocopy",
     "defmt",
+    // Derives `Display` and `Error` when the crate is compiled.
+    "thiserror",
     // Traits of pins and buses; their implementations do the I/O.
     "embedded-hal",
     "rf24-rs",

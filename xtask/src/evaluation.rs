@@ -1,11 +1,11 @@
-//! `evaluation`: `cargo xtask evaluation`: figures of `docs/results/evaluation.md`, and of the tables of matches and
-//! skills.
+//! `evaluation`: `cargo xtask evaluation`: figures of `docs/results/evaluation.md`, and of the tables of
+//! matches and skills.
 
 use crate::context::{Context, Failure, run};
 
 /// Plays our team against each other team, each against each, our team without or with each part of the
-/// second paper, and the paper's own league, and writes `docs/results/matches.md`. Played matches are kept: the same
-/// command continues after an interrupt.
+/// second paper, and the paper's own league, and writes `docs/results/matches.md`. Played matches are kept:
+/// the same command continues after an interrupt.
 pub(crate) fn write_matches(context: &Context, fresh: bool) -> Result<(), Failure> {
     for (section, description) in MATCHES {
         let line = format!(
@@ -17,8 +17,8 @@ pub(crate) fn write_matches(context: &Context, fresh: bool) -> Result<(), Failur
     Ok(())
 }
 
-/// Sections of `docs/results/matches.md`, and what is played for each: 40 matches distinguish a goal a match from
-/// chance, 10 the order of teams.
+/// Sections of `docs/results/matches.md`, and what is played for each: 40 matches distinguish a goal a match
+/// from chance, 10 the order of teams.
 const MATCHES: [(&str, &str); 5] = [
     ("opponents", "--matches 40"),
     ("round-robin", "--round-robin --matches 10"),

@@ -174,8 +174,8 @@ impl<'a> CaseBase<'a> {
     }
 }
 
-/// A robot's actions, from those of its case and the ends of the robots' lists; none for a robot that the case
-/// does not have.
+/// A robot's actions, from those of its case and the ends of the robots' lists; none for a robot that the
+/// case does not have.
 fn gameplay<'a>(actions: &'a [RawAction], ends: &[u8], robot: u8) -> &'a [RawAction] {
     let end = |robot: usize| ends.get(robot).map_or(0, |end| usize::from(*end));
     let robot = usize::from(robot);

@@ -12,8 +12,8 @@ use protocol::link::Packet;
 use protocol::{RobotId, TeamId};
 use runtime::ports::{RadioReceiver, RadioSender};
 
-/// A team's channel, by which base station and robots agree without a setting: 2 Mbit/s at 2,402 MHz and 4 MHz
-/// more for each team number, which stays below 2,480 MHz.
+/// A team's channel, by which base station and robots agree without a setting: 2 Mbit/s at 2,402 MHz and 4
+/// MHz more for each team number, which stays below 2,480 MHz.
 pub fn channel(team: TeamId) -> Channel {
     Channel { team, megahertz: 2 + 4 * (team.0 % 20), rate: Rate::Mbps2 }
 }

@@ -341,10 +341,11 @@ const ASK_EVERY: Duration = Duration::millis(10);
 const PRESENCE_LEASE: Duration = Duration::millis(500);
 /// Period of the search for one number: every one in 0.32 s, without repeats, 3 % of the air.
 const SEARCH_EVERY: Duration = Duration::millis(20);
-/// Longest time from a frame's first fragment to its last: a robot answers every 10 ms, and its 32 frames take
-/// half a second.
+/// Longest time from a frame's first fragment to its last: a robot answers every 10 ms, and its 32 frames
+/// take half a second.
 const ASSEMBLY_TIME_MAX: Duration = Duration::millis(60);
-/// Time after which a chip that sends stands still: three payloads without repeats, or one with all, take 2 ms.
+/// Time after which a chip that sends stands still: three payloads without repeats, or one with all, take 2
+/// ms.
 const SENDING_TIME_MAX: Duration = Duration::millis(20);
 /// Period in which the chip's registers are checked.
 const CHECK_EVERY: Duration = Duration::millis(100);

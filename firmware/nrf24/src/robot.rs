@@ -153,7 +153,8 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
 
 /// Interval at which a radio is served while its line IRQ stays high.
 pub const SERVE_EVERY: Duration = Duration::millis(1);
-/// Longest wait of a beacon or telemetry: two of a robot's telemetry periods, after which a newer one is there.
+/// Longest wait of a beacon or telemetry: two of a robot's telemetry periods, after which a newer one is
+/// there.
 const WAIT_MAX: Duration = Duration::millis(100);
 /// Own frames that wait: a beacon, telemetry, a handshake and a part of a decision.
 const WAITING_MAX: usize = 4;

@@ -2,7 +2,8 @@
 //! on its own: `cargo run -p onetwo-runtime --example bring_up -- reversed-motor`.
 //!
 //! With `--udp 127.0.0.1:10400 --page robot.page` it waits there for a host, plays them in real time and
-//! reports them as a board does by radio: `onetwo robot bring-up --robots udp://127.0.0.1:10400 …` shows them.
+//! reports them as a board does by radio: `onetwo robot bring-up --robots udp://127.0.0.1:10400 …` shows
+//! them.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::process::ExitCode;

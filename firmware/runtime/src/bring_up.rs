@@ -4,8 +4,8 @@
 //!
 //! Each check takes what the board's ports measure ([`Reading`]), drives at most one wheel, and ends with
 //! what it measured or with what is wrong ([`Finding`]) and what to look at. No check waits for ever, and
-//! none depends on another: one broken part hides no other. [`Results`] reports the state of each to the host.
-//! [`mod@bench`] is a robot of simulated parts with faults to plant.
+//! none depends on another: one broken part hides no other. [`Results`] reports the state of each to the
+//! host. [`mod@bench`] is a robot of simulated parts with faults to plant.
 
 pub mod bench;
 mod listener;

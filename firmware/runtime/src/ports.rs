@@ -43,8 +43,8 @@ pub trait WheelsPort {
     /// Rim speeds since the last call, m/s; NaN where an encoder is known to be broken.
     fn measured(&mut self) -> [f32; WHEELS];
 
-    /// Applies the wheels' duty cycles, −1 to 1 of the battery's voltage, and the dribbler's share of its full
-    /// speed, 0 to 1, until the next call.
+    /// Applies the wheels' duty cycles, −1 to 1 of the battery's voltage, and the dribbler's share of its
+    /// full speed, 0 to 1, until the next call.
     fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32);
 
     /// Takes the current off wheels and dribbler.

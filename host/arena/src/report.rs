@@ -23,7 +23,8 @@ pub struct TrialReport {
     pub backend: &'static str,
     /// Random seed of the trial.
     pub seed: u64,
-    /// End of the trial. Against two defenders `goal` is a ball in the penalty area (paper §5.2.2: "to goal").
+    /// End of the trial. Against two defenders `goal` is a ball in the penalty area (paper §5.2.2: "to
+    /// goal").
     pub outcome: TrialOutcome,
     /// Seconds from kick-off to its end.
     pub time_s: f64,

@@ -16,6 +16,7 @@ mod open_play;
 mod pass_state;
 mod penalty;
 mod plan;
+mod playable;
 mod rated_play;
 mod set_piece;
 mod support;

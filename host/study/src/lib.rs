@@ -5,7 +5,8 @@
 //!
 //! [`mod@matches`] plays many matches and reports the results, in the form of the second paper's Table 2.
 //!
-//! [`scenes`] plays short scenes with several variants of a team and measures what a part of its play is worth.
+//! [`scenes`] plays short scenes with several variants of a team and measures what a part of its play is
+//! worth.
 //!
 //! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
 //!
@@ -13,8 +14,8 @@
 //!
 //! [`learning`] makes a case library better by play.
 //!
-//! Each is an [`Experiment`](store::Experiment): a plan, its jobs and their rows. [`store`] plays and keeps them;
-//! [`statistics`] has the tests and intervals that all of them use.
+//! Each is an [`Experiment`](store::Experiment): a plan, its jobs and their rows. [`store`] plays and keeps
+//! them; [`statistics`] has the tests and intervals that all of them use.
 #![forbid(unsafe_code)]
 
 pub mod evaluation;

@@ -35,7 +35,8 @@ pub struct Crossing {
     pub at: Point<Field>,
 }
 
-/// Share of a path at which its coordinate crosses a line at ±`limit`; `None` where it does not end beyond it.
+/// Share of a path at which its coordinate crosses a line at ±`limit`; `None` where it does not end beyond
+/// it.
 fn share_to_line(start: f32, motion: f32, end: f32, limit: f32) -> Option<f32> {
     let crossed = end.abs() > limit && motion != 0.0;
     crossed.then(|| (((if end < 0.0 { -limit } else { limit }) - start) / motion).clamp(0.0, 1.0))

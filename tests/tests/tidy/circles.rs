@@ -229,13 +229,10 @@ const KNOWN: [(&str, &[&str]); 7] = [
 ];
 
 /// Circles of folders that are left, likewise.
-const KNOWN_OF_FOLDERS: [(&str, &[&str]); 10] = [
-    ("arena", &["evaluation", "game"]),
+const KNOWN_OF_FOLDERS: [(&str, &[&str]); 4] = [
     ("board-kit", &["motors", "wheels"]),
     ("brain", &["belief", "body", "hosted", "skills"]),
     ("brain", &["skills::wheels::get_ball", "skills::wheels::place_ball"]),
-    ("casebase", &["case", "index", "path", "plan_simulation", "stored", "table"]),
-    ("host", &["proposal", "strategy"]),
     (
         "host",
         &[
@@ -246,7 +243,4 @@ const KNOWN_OF_FOLDERS: [(&str, &[&str]); 10] = [
             "strategy::threat",
         ],
     ),
-    ("onetwo", &["cases", "failure", "live", "replay"]),
-    ("onetwo", &["control", "robot", "simulate"]),
-    ("protocol", &["host", "link", "peer", "team"]),
 ];

@@ -196,9 +196,11 @@ const FACTS: [Fact; 10] = [
             // Half a body is misread for sure.
             ("host/src/tracking/robots.rs", "SAME_PLACE"),
             // What a robot leaves to a ball and stands off by.
-            ("host/src/strategy/coach/ahead.rs", "WAITS_WITHIN"),
+            ("host/src/strategy/coach/ahead.rs", "WAITING_WITHIN_M"),
             // Nine times the noise of vision.
-            ("host/src/learned/latency.rs", "const FAR"),
+            ("host/src/learned/latency.rs", "MOVED_LAST_M"),
+            // A share of the field between pictures.
+            ("host/figures/src/sheet.rs", "let (gap, text)"),
         ],
     },
     Fact {
@@ -284,11 +286,12 @@ const FACTS: [Fact; 10] = [
         other: &[
             // The legged robot's path to a ball.
             ("firmware/brain/src/skills/legged/get_ball.rs", "STAND_OFF"),
-            // Tolerance of physics, and steps between two contacts.
-            ("hil-sim/src/small_size/contact.rs", "const TOUCH"),
+            // Steps between two contacts.
             ("hil-sim/src/small_size/mod.rs", "TOUCH_GAP_STEPS"),
             // A statistic.
-            ("host/learning/src/paired.rs", "TOUCHES_Z"),
+            ("host/study/src/learning/paired.rs", "TOUCHES_Z"),
+            // A number of situations.
+            ("host/study/src/learning/trials/search.rs", "TOUCHED_MIN"),
             // Start and end of a path.
             ("firmware/motion/src/avoid/item.rs", "TOUCH"),
             // A speed of bodies, and an angle beside an opponent.

@@ -168,7 +168,7 @@ fn wire_limits() -> Vec<String> {
         format!("part < parts ≤ {}, else refused", host_messages::PARTS_MAX),
         format!("list, at most {PART_ROBOTS_MAX} (fewer"),
         format!("| refused | {} × fixed u16 |", Refusal::KINDS),
-        format!("role ({}), directive", roles.join(", ")),
+        format!("role under the rules ({}), directive", roles.join(", ")),
         format!("greatest speed, mm/s, at least {}", DriveLimits::SPEED_MIN),
         format!(
             "greatest acceleration, mm/s², at least {}; {}: the robot's own",

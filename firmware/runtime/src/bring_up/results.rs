@@ -1,5 +1,5 @@
-//! `results`: state of each check of a robot's first start, and the packets that report it to the host over and
-//! over: a lost packet only delays, and a host that starts late still gets them all.
+//! `results`: state of each check of a robot's first start, and the packets that report it to the host over
+//! and over: a lost packet only delays, and a host that starts late still gets them all.
 
 use protocol::bring_up::{BringUpReport, CHECKS, CheckState, Reporter};
 use protocol::link::Packet;

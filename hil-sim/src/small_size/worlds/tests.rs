@@ -71,8 +71,9 @@ fn wheels(rims: [f32; 4]) -> ActuatorFrame {
 
 #[test]
 fn a_dribbler_keeps_the_ball_up_to_the_acceleration_of_its_pull() {
-    // Pull and side of the dribbler, speed and acceleration backwards, kept. The field surface takes 0.35 m/s² of
-    // a pull of 1, and each hop off the front removes the ball's roll; without a pull the ball stays behind.
+    // Pull and side of the dribbler, speed and acceleration backwards, kept. The field surface takes 0.35
+    // m/s² of a pull of 1, and each hop off the front removes the ball's roll; without a pull the ball stays
+    // behind.
     for (of_pull, of_side, speed, acceleration, kept) in [
         (0.5, None, 1.5, 3.0, false),
         (2.0, None, 1.5, 3.0, false),

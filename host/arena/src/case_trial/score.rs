@@ -21,8 +21,8 @@ pub struct Score {
     pub retrieved: usize,
     /// Gameplays played to their end.
     pub completed: usize,
-    /// Cases that were retrieved instead, by name; `none` where no case fitted, `nothing` where no decision was
-    /// made.
+    /// Cases that were retrieved instead, by name; `none` where no case fitted, `nothing` where no decision
+    /// was made.
     pub instead: BTreeMap<String, usize>,
     /// Ends of the gameplays that were not completed.
     pub aborted: BTreeMap<&'static str, usize>,

@@ -1,9 +1,9 @@
 //! `holds`: spells in which a robot holds the ball in play: how long, and how often it turns to and fro. From
 //! the true world. s, m, rad.
 //!
-//! A robot holds the ball while the ball is on the field surface within [`HELD_WITHIN_M`] of its front plate. A gap of
-//! up to [`GAP`] belongs to the spell: a ball that rolls off the roller and is taken again was not released.
-//! A spell ends with the phase.
+//! A robot holds the ball while the ball is on the field surface within [`HELD_WITHIN_M`] of its front
+//! plate. A gap of up to [`GAP`] belongs to the spell: a ball that rolls off the roller and is taken again
+//! was not released. A spell ends with the phase.
 
 use hil_sim::small_size::{Ball, Robot};
 use protocol::Who;

@@ -5,10 +5,10 @@ use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};
 
 use super::super::order::{OrderReason, Role, Task};
-use super::super::threat::receiving::comes_at_goal;
 use super::super::view::{View, ViewBall};
 use super::super::{roles, support};
 use super::attack::Intent;
+use super::playable::is_left_to_the_keeper;
 use super::rated_play::RatedPlay;
 use super::uncover::Uncovering;
 use super::{Coach, Plan};
@@ -16,11 +16,6 @@ use super::{Coach, Plan};
 /// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
 /// case.
 const CASE_PLAYER_BONUS_S: f32 = 1.0;
-/// A ball this near their area counts as in it, m: a robot that touches it from outside is 5 mm off the area,
-/// and cameras err by 3.
-const THEIR_AREA_WITHIN_M: f32 = 0.008;
-/// A slower ball at our goal can be reached, m/s.
-const SHOT_SPEED_MIN_M_S: f32 = 1.0;
 
 /// Memory of open play.
 #[derive(Clone, Debug)]
@@ -136,22 +131,6 @@ impl Coach {
         let worth = if self.open_play.attacked { -roles::WORTH } else { roles::WORTH };
         self.open_play.attacked = theirs + worth < ours;
     }
-}
-
-/// Only a keeper may, or can, play the ball; a robot that blocks a shot stays there.
-pub(super) fn is_left_to_the_keeper(view: &View, ball: &ViewBall) -> bool {
-    let forbidden =
-        view.in_their_area(ball.position, THEIR_AREA_WITHIN_M) || view.in_our_area(ball.position, 0.0);
-    forbidden || is_shot_at_us(view, ball)
-}
-
-/// Whether a shot moves at our goal: a robot that ran after it would open the line that it blocks.
-fn is_shot_at_us(view: &View, ball: &ViewBall) -> bool {
-    let goal = view.our_goal();
-    ball.velocity.norm() > SHOT_SPEED_MIN_M_S
-        && ball.position.x() < 0.0
-        && ball.rest.x() < goal.x()
-        && comes_at_goal(view, ball.position, ball.velocity)
 }
 
 fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {

@@ -12,7 +12,7 @@ use super::super::possession::{Arrival, Possession, arrival};
 use super::super::rated::{self, Action, OfCases, Rated, RatedList};
 use super::super::roles;
 use super::super::view::{View, ViewBall, ViewRobot};
-use super::open_play::is_left_to_the_keeper;
+use super::playable::is_left_to_the_keeper;
 use super::{Coach, Plan};
 
 /// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the

@@ -2,8 +2,8 @@
 //! goes on from there, and shards in one directory read each other's.
 //!
 //! A shard plays its own units first and then waits for those of the others. Where another shard has not
-//! finished a unit for [`ABSENT_AFTER`] it counts as absent (not started yet, killed or never scheduled) and the
-//! present ones play its units too, until its journal grows again. A unit that two shards play has equal
+//! finished a unit for [`ABSENT_AFTER`] it counts as absent (not started yet, killed or never scheduled) and
+//! the present ones play its units too, until its journal grows again. A unit that two shards play has equal
 //! trials in both journals, so that only time is lost.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,8 +1,8 @@
 //! `row_file`: crash-safe file of the rows of a shard: every job is a line, appended when it is over.
 //!
 //! The first line identifies the evaluation, the second names the columns. A last line without its end was
-//! torn by the interrupt: it is cut off, and its job played again. Lines stand in the order in which jobs ended;
-//! the reader sorts.
+//! torn by the interrupt: it is cut off, and its job played again. Lines stand in the order in which jobs
+//! ended; the reader sorts.
 
 use std::io;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,5 @@
-//! `profiles`: tests of the compatibility profiles of the league's other simulators, with the numbers of their
-//! deviations.
+//! `profiles`: tests of the compatibility profiles of the league's other simulators, with the numbers of
+//! their deviations.
 
 use super::*;
 

@@ -205,8 +205,8 @@ impl<'a> Rows<'a> {
         Some(point.with_decimals(decimals(measure)))
     }
 
-    /// Compares by how much a measure is greater in one approach than in another, in two cells; in the first it
-    /// should be more.
+    /// Compares by how much a measure is greater in one approach than in another, in two cells; in the first
+    /// it should be more.
     pub(in super::super) fn effects(
         self,
         first: (u8, Scenario, Measure),
