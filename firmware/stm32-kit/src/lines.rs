@@ -73,12 +73,12 @@ pub fn chip(
     bus: Spi<'static, Blocking, Master>,
     select: Peri<'static, impl Pin>,
     enable: Peri<'static, impl Pin>,
-    news: Peri<'static, impl Pin>,
+    irq: Peri<'static, impl Pin>,
 ) -> RadioChip {
     let select = Output::new(select, Level::High, Speed::High);
     let Ok(spi) = ExclusiveDevice::new(bus, select, Delay);
     let enable = Output::new(enable, Level::Low, Speed::High);
-    ChipWires { spi, enable, news: Input::new(news, Pull::Up), pause: Delay }
+    ChipWires { spi, enable, irq: Input::new(irq, Pull::Up), pause: Delay }
 }
 
 /// SPI clock of the radio chip, which allows 10 MHz (PS 8.3.2).
