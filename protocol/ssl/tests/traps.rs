@@ -71,7 +71,7 @@ fn trap_02_robots_where_cameras_overlap_come_twice() {
 }
 
 #[test]
-fn trap_02_geometry_comes_with_one_camera_a_packet_from_grsim_but_whole_from_erforce() {
+fn trap_02_grsim_sends_one_calibration_a_packet_and_erforce_all_of_them() {
     for (name, packets, cameras) in [(GRSIM, 168, vec![0, 1, 2, 3]), (ERFORCE, 1483, vec![0])] {
         let geometries = geometries(name);
         assert_eq!(geometries.len(), packets, "{name}");
