@@ -1,7 +1,7 @@
 //! `run`: a whole host by one call: sockets and links opened, a thread for each, one loop that feeds the host
 //! what arrives and sends its output (docs/architecture.md §3).
 //!
-//! [`Host`](crate::Host) is a value without sockets; here is what stands around it, for programs that lead
+//! [`Host`] is a value without sockets; here is what stands around it, for programs that lead
 //! robots. Nothing that is missing ends the loop: it reports what it waits for, and goes on when that
 //! arrives. What an operator sees and asks for goes through [`Operator`]. Times on the host's clock, which is
 //! 0 when the loop starts.

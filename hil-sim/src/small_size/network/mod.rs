@@ -1,7 +1,7 @@
 //! `network`: a simulated field on the league's network by one call: the simulation protocol's ports, vision,
 //! a referee beside it, and the clock that drives the field (docs/architecture.md §7.3).
 //!
-//! [`Server`](super::server::Server) is a value without sockets; here is what stands around it. It goes on
+//! [`Server`] is a value without sockets; here is what stands around it. It goes on
 //! where a port is taken or a network is missing, and reports how to fix it. What an operator sees and asks
 //! for goes through [`Spectator`].
 

@@ -61,7 +61,7 @@ struct Run<'a> {
 }
 
 impl Results {
-    /// Results of an evaluation's trials in the plan's order, as [`merge`](super::merge) returns them.
+    /// Results of an evaluation's trials in the plan's order, as [`merge`](crate::store::merge) returns them.
     pub fn new(identity: Identity, rows: Vec<TrialRow>) -> Result<Self, EvaluationError> {
         let hash = csv_hash(&to_csv(&rows)?);
         let tables = tables(&rows);
