@@ -1,7 +1,7 @@
 //! `failure`: why a verb fails, and how to fix it. Exit code 1 (docs/case-format.md §5); wrong usage is
 //! clap's.
 //!
-//! Every module has the type of its own errors beside it; whatever it is, `?` makes it a [`Failure`].
+//! Every module has the type of its own errors beside it; `?` turns any of them into a [`Failure`].
 
 use std::error::Error;
 use std::fmt;

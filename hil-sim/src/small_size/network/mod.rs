@@ -81,7 +81,7 @@ pub struct FieldRequest {
     pub restart: Option<u64>,
 }
 
-/// Whoever watches a field: a terminal, a page, a tracker, or nobody.
+/// Observer of a field: a terminal, a page, a tracker, or none.
 pub trait Spectator {
     /// The ports are open: lines that say where.
     fn started(&mut self, lines: Vec<String>);
