@@ -15,7 +15,7 @@ pub struct CaseText {
 }
 
 impl CaseText {
-    /// Reads a text; an error where it is no TOML.
+    /// Reads a text; an error where it is not TOML.
     pub fn read(text: &str) -> Result<Self, EditError> {
         let document = text.parse();
         let syntax = |error: toml_edit::TomlError| EditError::Syntax(error.message().to_owned());

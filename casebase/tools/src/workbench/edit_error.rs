@@ -3,8 +3,8 @@
 /// Reason why a change is not made.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
-    /// The text is no TOML.
-    #[error("the text is no TOML, mend it by hand: {}", foreign::excerpt(.0, 300))]
+    /// The text is not TOML.
+    #[error("the text is not TOML, correct it by hand: {}", foreign::excerpt(.0, 300))]
     Syntax(String),
     /// The case has no such part.
     #[error("the case has no {}; take one that it shows", foreign::excerpt(.0, 60))]

@@ -194,8 +194,8 @@ impl<'s> FieldLoop<'s> {
     fn set_speed(&mut self, speed: f32) {
         let control = SimulatorControl { simulation_speed: Some(speed), ..SimulatorControl::default() };
         let command = SimulatorCommand { control: Some(control), config: None };
-        let nobody = SocketAddr::from(([127, 0, 0, 1], 9));
-        self.server.handle(Port::Simulator, nobody, &command.encode_to_vec());
+        let no_client = SocketAddr::from(([127, 0, 0, 1], 9));
+        self.server.handle(Port::Simulator, no_client, &command.encode_to_vec());
         while self.server.poll_transmit().is_some() {}
     }
 }
