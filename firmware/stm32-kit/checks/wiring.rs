@@ -22,8 +22,8 @@ fn wires_of_the_readme(readme: &str) -> Vec<(String, String)> {
     readme.lines().filter_map(wire).collect()
 }
 
-fn is_pin(label: &str) -> bool {
-    let mut letters = label.chars();
+fn is_pin(name: &str) -> bool {
+    let mut letters = name.chars();
     letters.next() == Some('P')
         && letters.next().is_some_and(|port| port.is_ascii_uppercase())
         && letters.as_str().parse::<u8>().is_ok_and(|number| number < 16)
@@ -45,17 +45,17 @@ pub(crate) fn pins_are_distinct(pins: &str, taken: &[&str]) {
     assert!(twice.is_empty(), "{twice:?} are the board's own");
 }
 
-/// What a panic turns off is what the pins say: timers in reset, and two pins of port E low.
+/// Fails unless a panic turns off what the pins name: timers in reset, and two pins of port E low.
 pub(crate) fn panic_turns_off(pins: &str, off: &str, pairs: &[(&str, &str)]) {
     for (pin, turned_off) in pairs {
         assert!(pins.contains(&format!("        {pin} \"")), "{pin} is elsewhere now; mend off.rs too");
         assert!(off.contains(turned_off), "{turned_off}");
     }
-    assert!(off.contains("pac::GPIOE.bsrr()"));
+    assert!(off.contains("stm32_kit::emergency_stop!"));
 }
 
-/// What is flashed from the board's directory (`here` is its `.cargo/config.toml`) is compiled as what is
-/// measured: the workspace's profile, and the board's own package small (`Board::profile`).
+/// Fails unless what is flashed from the board's directory (`here` is its `.cargo/config.toml`) is compiled
+/// as what is measured: the workspace's profile, and the board's own package small (`Board::profile`).
 pub(crate) fn flashed_as_measured(here: &str, workspace: &str, package: &str) {
     let settings = |text: &str, head: &str| -> Option<BTreeSet<String>> {
         let lines = text.lines().skip_while(|line| *line != head).skip(1);

@@ -4,6 +4,7 @@
 //! | part | module |
 //! |---|---|
 //! | table of pins | `parts!` |
+//! | drivers, flash, faults, emergency stop, programs of a board | `drivers!`, `flash!`, `fault_handlers!`, `emergency_stop!`, `robot_main!`, `bring_up_main!` |
 //! | wheels' and dribbler's PWM | `pwm` |
 //! | encoders | `encoders` |
 //! | pulses that end by themselves, kicker | `pulse`, `kicker` |
@@ -16,6 +17,7 @@
 #![forbid(unsafe_code)]
 
 pub mod analog;
+mod board;
 pub mod encoders;
 pub mod kicker;
 pub mod lines;

@@ -26,6 +26,8 @@ pub struct WheelPins<'a, T> {
     pub back_left: PwmPin<'a, T, Ch3>,
     /// The front left wheel's PWM.
     pub front_left: PwmPin<'a, T, Ch4>,
+    /// The direction wires of the wheels, in the same order.
+    pub directions: [Output<'a>; WHEELS],
 }
 
 /// The drivers of all five motors, without current. `enable` is high for current, `fault` pulled low by a
@@ -33,7 +35,6 @@ pub struct WheelPins<'a, T> {
 pub fn drivers<T: GeneralInstance4Channel, D: SetDutyCycle>(
     timer: Peri<'static, T>,
     pins: WheelPins<'static, T>,
-    directions: [Output<'static>; WHEELS],
     dribbler: D,
     enable: Output<'static>,
     fault: Peri<'static, impl Pin>,
@@ -48,7 +49,7 @@ pub fn drivers<T: GeneralInstance4Channel, D: SetDutyCycle>(
         CountingMode::EdgeAlignedUp,
     );
     let channels = pwm.split();
-    let [a, b, c, d] = directions;
+    let [a, b, c, d] = pins.directions;
     let wheels = [(channels.ch1, a), (channels.ch2, b), (channels.ch3, c), (channels.ch4, d)];
     let wheels = wheels.map(|(channel, direction)| PwmDir::new(started(channel), direction));
     Bridges::new(wheels, dribbler, enable, Input::new(fault, Pull::Up))
@@ -131,7 +132,7 @@ impl<T: GeneralInstance1Channel> SetDutyCycle for OneChannelPwm<T> {
 
 /// Output compare mode, high until the compare value, then low (OC1M).
 const PWM_MODE1: u8 = 6;
-/// What these boards are wired for.
+/// Scheme of motors that these boards are wired for.
 const _: () = assert!(
     matches!(RobotSpec::OURS.parts.motors, MotorScheme::PwmDirection),
     "this board drives motors by PWM and direction; the robot's description has another `motors.scheme`"

@@ -5,32 +5,13 @@
 //! Connect: everything else, and let a host run. See: a line for each check on the log, what it measured, or
 //! what is wrong and what to look at. At the last check hold a ball before the dribbler, then take it away.
 //!
-//! A robot that has its page (`onetwo firmware flash --page`) tells the same by radio, until it is switched
+//! A robot that has its page (`onetwo firmware flash --page`) reports the same by radio, until it is switched
 //! off: `onetwo robot bring-up --team N --robots serial:DEVICE --key-file team.key` is its host and shows it.
 #![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[embassy_executor::main]
-async fn main(spawner: embassy_executor::Spawner) {
-    use board_f407::drivers;
-    use board_f407::flash::{self, Ledger};
-    use board_kit::ledger;
-    use board_kit::robot::identity;
-    use board_kit::wheels::Wheels;
-
-    // One task is enough.
-    let _ = spawner;
-    let parts = board_f407::start();
-    let wheels = Wheels::new(drivers::motors(parts.motors), drivers::encoders(parts.encoders));
-    let who = identity(flash::page(), ledger::begin(&mut Ledger::new(parts.keeper.flash)));
-    let Some(radio) = drivers::radio(parts.radio) else {
-        defmt::error!("the radio's line cannot have this rate");
-        return;
-    };
-    let (gyroscope, analog) = (drivers::imu(parts.imu), drivers::analog(parts.analog));
-    board_kit::bring_up::run(wheels, radio, gyroscope, analog, who).await;
-}
+stm32_kit::bring_up_main!(board_f407);
 
 #[cfg(not(target_os = "none"))]
 fn main() {}

@@ -20,20 +20,20 @@ fn no_pin_has_two_things_to_do_and_none_is_the_probes() {
 }
 
 #[test]
-fn what_a_panic_turns_off_is_what_the_pins_say() {
+fn a_panic_turns_off_the_timers_and_pins_of_the_table() {
     let pairs = [
-        ("timer: TIM1,", "set_tim1rst(true)"),
-        ("dribbler_timer: TIM11,", "set_tim11rst(true)"),
-        ("coils: TIM9,", "set_tim9rst(true)"),
-        ("charger: TIM12,", "set_tim12rst(true)"),
-        ("enable: PE0,", "set_br(0, true)"),
-        ("hold: PE4,", "set_br(4, true)"),
+        ("timer: TIM1,", "set_tim1rst"),
+        ("dribbler_timer: TIM11,", "set_tim11rst"),
+        ("coils: TIM9,", "set_tim9rst"),
+        ("charger: TIM12,", "set_tim12rst"),
+        ("enable: PE0,", "pins low: GPIOE 0,"),
+        ("hold: PE4,", "pins low: GPIOE 0, 4"),
     ];
     wiring::panic_turns_off(PINS, include_str!("../src/off.rs"), &pairs);
 }
 
 #[test]
-fn what_is_flashed_from_this_directory_is_compiled_as_what_is_measured() {
+fn the_flashed_profile_equals_the_measured_one() {
     let workspace = include_str!("../../../../Cargo.toml");
     wiring::flashed_as_measured(include_str!("../.cargo/config.toml"), workspace, "board-f407");
 }

@@ -4,64 +4,12 @@
 //! two cycles go to one; the longest in docs/firmware.md takes three times as long. A control step may be
 //! late by this time.
 
-use board_f407::drivers::{self, BoardWatchdog, Drivers, Encoders, Kicker};
-use board_f407::flash::{self, Ledger};
-use board_f407::{fault, off};
-use board_kit::robot::{Board, BoardParts, identity, log_crash};
-use board_kit::wheels::Wheels;
-use board_kit::{ledger, robot_tasks};
-use case_library::division_b;
-use embassy_executor::Executor;
-use embassy_stm32::gpio::Output;
-use static_cell::StaticCell;
-use stm32_kit::pwm::low;
-use stm32_kit::{analog, lines};
+use stm32_kit::lines;
 
 /// A robot's board with an STM32F407.
 struct F407;
 
-impl Board for F407 {
-    type Wheels = Wheels<Drivers, Encoders>;
-    type Kicker = Kicker;
-    type Gyroscope = lines::BoardImu;
-    type Analog = analog::Analog;
-    type Sender = lines::Sender;
-    type Receiver = lines::Receiver;
-    type Watchdog = BoardWatchdog;
-    type Lamp = Output<'static>;
-}
-
-robot_tasks!(F407);
-
-#[cortex_m_rt::entry]
-fn main() -> ! {
-    let parts = board_f407::start();
-    // First of all, the levels of the motors' wires before they are driven.
-    let motors = drivers::motors(parts.motors);
-    let kicker = drivers::kicker(parts.kicker);
-    let (mut alarm, alive) = (low(parts.lamps.alarm), low(parts.lamps.alive));
-    log_crash(&fault::crash_record());
-    let who = identity(flash::page(), ledger::begin(&mut Ledger::new(parts.keeper.flash)));
-    let (Some(who), Some((sender, receiver))) = (who, drivers::radio(parts.radio)) else {
-        alarm.set_high();
-        off::everything();
-        loop {
-            cortex_m::asm::wfi();
-        }
-    };
-    let parts = BoardParts::<F407> {
-        wheels: Wheels::new(motors, drivers::encoders(parts.encoders)),
-        kicker,
-        gyroscope: drivers::imu(parts.imu),
-        analog: drivers::analog(parts.analog),
-        sender,
-        receiver,
-        // The last step that may take long is over.
-        watchdog: BoardWatchdog::start(parts.keeper.watchdog),
-        alive,
-    };
-    static EXECUTOR: StaticCell<Executor> = StaticCell::new();
-    EXECUTOR.init(Executor::new()).run(|spawner| {
-        run(spawner, who, division_b(), parts).expect("every task is started once");
-    })
-}
+stm32_kit::robot_main!(
+    F407 of board_f407, sender: lines::Sender, receiver: lines::Receiver,
+    radio: |_who, parts| board_f407::drivers::radio(parts.radio)
+);

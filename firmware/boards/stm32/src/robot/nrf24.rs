@@ -5,7 +5,7 @@ use board_kit::robot::Identity;
 use board_stm32::{drivers, pins};
 use stm32_kit::lines;
 
-/// Sends.
+/// Sending half of the radio chip.
 pub(crate) type Sender = nrf24::ChipSender;
 /// Receives, and serves the chip.
 pub(crate) type Receiver = lines::RadioChipReceiver;

@@ -1,10 +1,10 @@
-//! Build script: memory map and log levels. Nothing to do on the PC.
+//! Build script of the boards with an STM32: memory map and log levels. Nothing to do on the PC.
 
 use std::path::PathBuf;
 use std::{env, error::Error, fs};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=../../stm32-kit/board_build.rs");
     println!("cargo:rerun-if-changed=memory.x");
     println!("cargo:rerun-if-env-changed=DEFMT_LOG");
     if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
