@@ -3,6 +3,36 @@
 
 use std::collections::BTreeSet;
 
+/// The checks as tests of a board: its package, pins that are the board's own, and what a panic turns off.
+macro_rules! tests {
+    ($package:literal, taken: [$($taken:literal),+ $(,)?], off: [$($pair:expr),+ $(,)?]) => {
+        const README: &str = include_str!("../README.md");
+        const PINS: &str = include_str!("../src/pins.rs");
+
+        #[test]
+        fn the_readme_shows_the_wiring_as_it_is() {
+            wiring::readme_shows(PINS, README);
+        }
+
+        #[test]
+        fn no_pin_has_two_things_to_do_and_none_is_the_probes() {
+            wiring::pins_are_distinct(PINS, &[$($taken),+]);
+        }
+
+        #[test]
+        fn a_panic_turns_off_the_timers_and_pins_of_the_table() {
+            wiring::panic_turns_off(PINS, include_str!("../src/off.rs"), &[$($pair),+]);
+        }
+
+        #[test]
+        fn the_flashed_profile_equals_the_measured_one() {
+            let workspace = include_str!("../../../../Cargo.toml");
+            wiring::flashed_as_measured(include_str!("../.cargo/config.toml"), workspace, $package);
+        }
+    };
+}
+pub(crate) use tests;
+
 /// `name: PE9, "what";`, of pins only.
 fn wires_of_the_source(pins: &str) -> Vec<(String, String)> {
     let wire = |line: &str| {
@@ -29,7 +59,6 @@ fn is_pin(name: &str) -> bool {
         && letters.as_str().parse::<u8>().is_ok_and(|number| number < 16)
 }
 
-/// The README shows the wiring as it is.
 pub(crate) fn readme_shows(pins: &str, readme: &str) {
     let source = wires_of_the_source(pins);
     assert!(source.len() > 30, "{} wires read", source.len());

@@ -116,7 +116,6 @@ macro_rules! flash {
             $counter + SECTOR_LEN * at.half as u32 + (CELL_LEN * at.index) as u32
         }
 
-        /// Address of the flash.
         const FLASH_START: u32 = 0x0800_0000;
         /// Length of the sectors of the counter and of the page, bytes.
         const SECTOR_LEN: u32 = 0x0002_0000;

@@ -68,7 +68,7 @@ mod robot {
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(spawner: embassy_executor::Spawner) {
+async fn main(_spawner: embassy_executor::Spawner) {
     use board_kit::motors::Bridge as _;
     use embassy_time::{Duration, Ticker, Timer};
     use robot::MOTOR;
@@ -76,8 +76,6 @@ async fn main(spawner: embassy_executor::Spawner) {
     /// Share of the battery's voltage.
     const DUTY: f32 = 0.16;
 
-    // One task is enough.
-    let _ = spawner;
     let mut enable = robot::start(board_f407::start());
     let mut motor = &MOTOR;
     Timer::after_secs(2).await;

@@ -35,7 +35,6 @@ pub(crate) fn acknowledge() {
     INT_STS.write(u32::MAX);
 }
 
-/// Returns whether a received frame waits.
 pub(crate) fn has_frame() -> bool {
     RX_FIFO_INF.read() >> 16 & 0xff != 0
 }

@@ -1,6 +1,5 @@
 //! `register`: access to a memory-mapped device register, 32 bits wide, never merged or omitted.
 
-/// A register of the board.
 #[derive(Clone, Copy)]
 pub(crate) struct Register(usize);
 

@@ -9,14 +9,12 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(spawner: embassy_executor::Spawner) {
+async fn main(_spawner: embassy_executor::Spawner) {
     use board_kit::sampling::AnalogInputs as _;
     use board_stm32::drivers;
     use embassy_time::Timer;
     use runtime::sense::BreakBeam;
 
-    // One task is enough.
-    let _ = spawner;
     let mut analog = drivers::analog(board_stm32::start().analog);
     let mut break_beam = BreakBeam::new();
     loop {

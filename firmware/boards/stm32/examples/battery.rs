@@ -9,12 +9,10 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(spawner: embassy_executor::Spawner) {
+async fn main(_spawner: embassy_executor::Spawner) {
     use board_kit::sampling::AnalogInputs as _;
     use board_stm32::drivers;
 
-    // One task is enough.
-    let _ = spawner;
     let mut analog = drivers::analog(board_stm32::start().analog);
     loop {
         defmt::info!("{=f32} V", analog.battery());

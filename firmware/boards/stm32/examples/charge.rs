@@ -12,7 +12,7 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(spawner: embassy_executor::Spawner) {
+async fn main(_spawner: embassy_executor::Spawner) {
     use board_kit::sampling::AnalogInputs as _;
     use board_stm32::drivers;
     use embassy_time::{Duration, Instant, Timer};
@@ -23,8 +23,6 @@ async fn main(spawner: embassy_executor::Spawner) {
     const ENOUGH: f32 = 50.0;
     const EMPTY: f32 = 30.0;
 
-    // One task is enough.
-    let _ = spawner;
     let parts = board_stm32::start();
     let (mut kicker, mut analog) = (drivers::kicker(parts.kicker), drivers::analog(parts.analog));
     for round in 1..=3_u8 {

@@ -9,15 +9,13 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(spawner: embassy_executor::Spawner) {
+async fn main(_spawner: embassy_executor::Spawner) {
     use board_kit::not_wired::NotWired;
     use board_kit::wheels::Wheels;
     use board_stm32::drivers;
     use embassy_time::Timer;
     use runtime::ports::WheelsPort as _;
 
-    // One task is enough.
-    let _ = spawner;
     // Without motors no wheel counts as stuck.
     let counters = drivers::encoders(board_stm32::start().encoders);
     let mut wheels = Wheels::new(NotWired, counters);

@@ -9,13 +9,11 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(spawner: embassy_executor::Spawner) {
+async fn main(_spawner: embassy_executor::Spawner) {
     use board_kit::imu::Gyroscope as _;
     use board_stm32::drivers;
     use embassy_time::Timer;
 
-    // One task is enough.
-    let _ = spawner;
     let mut imu = drivers::imu(board_stm32::start().imu);
     loop {
         match imu.start().await {

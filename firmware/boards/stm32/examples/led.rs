@@ -9,11 +9,9 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(spawner: embassy_executor::Spawner) {
+async fn main(_spawner: embassy_executor::Spawner) {
     use embassy_stm32::gpio::{Level, Output, Speed};
 
-    // One task is enough.
-    let _ = spawner;
     let lamps = board_stm32::start().lamps;
     let mut alive = Output::new(lamps.alive, Level::High, Speed::Low);
     let mut alarm = Output::new(lamps.alarm, Level::Low, Speed::Low);

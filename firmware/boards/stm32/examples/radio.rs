@@ -8,12 +8,10 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(spawner: embassy_executor::Spawner) {
+async fn main(_spawner: embassy_executor::Spawner) {
     use board_kit::radio;
     use board_stm32::drivers;
 
-    // One task is enough.
-    let _ = spawner;
     let Some((mut sender, mut receiver)) = drivers::radio(board_stm32::start().radio) else {
         defmt::error!("the line cannot have this rate");
         return;

@@ -12,7 +12,7 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(spawner: embassy_executor::Spawner) {
+async fn main(_spawner: embassy_executor::Spawner) {
     use board_kit::motors::MotorDrivers as _;
     use board_stm32::drivers;
     use embassy_time::Timer;
@@ -21,8 +21,6 @@ async fn main(spawner: embassy_executor::Spawner) {
     /// Duty cycle, share of the battery's voltage: a wheel without load runs 1 m/s at the rim.
     const DUTY: f32 = 0.16;
 
-    // One task is enough.
-    let _ = spawner;
     let mut drivers = drivers::motors(board_stm32::start().motors);
     Timer::after_secs(2).await;
     for (wheel, name) in NAMES.iter().enumerate() {

@@ -4,42 +4,22 @@
 #[path = "../../../stm32-kit/checks/wiring.rs"]
 mod wiring;
 
-const PINS: &str = include_str!("../src/pins.rs");
-const README: &str = include_str!("../README.md");
-
-#[test]
-fn the_readme_shows_the_wiring_as_it_is() {
-    wiring::readme_shows(PINS, README);
-}
-
-#[test]
-fn no_pin_has_two_things_to_do_and_none_is_the_probes() {
-    // Debug probe, quartz, and a NUCLEO's Ethernet, USB and virtual serial line.
-    let taken = [
-        "PA13", "PA14", "PH0", "PH1", "PA1", "PA2", "PA7", "PB13", "PC1", "PC4", "PC5", "PG11", "PG13",
-        "PA8", "PA9", "PA10", "PA11", "PA12", "PD8", "PD9",
-    ];
-    wiring::pins_are_distinct(PINS, &taken);
-}
-
-#[test]
-fn a_panic_turns_off_the_timers_and_pins_of_the_table() {
-    let pairs = [
+// Taken: debug probe, quartz, and a NUCLEO's Ethernet, USB and virtual serial line.
+wiring::tests!(
+    "board-stm32",
+    taken: [
+        "PA13", "PA14", "PH0", "PH1", "PA1", "PA2", "PA7", "PB13", "PC1", "PC4", "PC5", "PG11", "PG13", "PA8",
+        "PA9", "PA10", "PA11", "PA12", "PD8", "PD9",
+    ],
+    off: [
         ("timer: TIM1,", "set_tim1rst"),
         ("dribbler_timer: TIM5,", "set_tim5rst"),
         ("coils: TIM15,", "set_tim15rst"),
         ("charger: TIM16,", "set_tim16rst"),
         ("enable: PE0,", "pins low: GPIOE 0,"),
         ("hold: PE4,", "pins low: GPIOE 0, 4"),
-    ];
-    wiring::panic_turns_off(PINS, include_str!("../src/off.rs"), &pairs);
-}
-
-#[test]
-fn the_flashed_profile_equals_the_measured_one() {
-    let workspace = include_str!("../../../../Cargo.toml");
-    wiring::flashed_as_measured(include_str!("../.cargo/config.toml"), workspace, "board-stm32");
-}
+    ]
+);
 
 #[test]
 fn every_example_is_in_the_readme_and_says_what_to_connect_and_what_to_see() {

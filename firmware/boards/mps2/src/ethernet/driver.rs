@@ -12,7 +12,6 @@ use super::lan9118::{self, CHECKSUM_LEN, FRAME_LEN_MIN};
 /// Wakes the stack's task when a frame was received.
 static RECEIVED: AtomicWaker = AtomicWaker::new();
 
-/// Handles the controller's interrupt.
 pub(crate) fn interrupt() {
     lan9118::acknowledge();
     RECEIVED.wake();

@@ -27,7 +27,6 @@ use static_cell::StaticCell;
 
 use driver::Ethernet;
 
-/// Mailboxes between the tasks.
 pub(crate) static BOXES: Mailboxes = Mailboxes::new();
 
 /// Sends no more orders: the simulator's body stands when none come.
@@ -35,7 +34,6 @@ pub(crate) fn stop() {
     ports::stop();
 }
 
-/// The robot's place in its network.
 pub(crate) struct Radio(NetworkPage);
 
 /// Reads the page of the network.
@@ -45,7 +43,6 @@ pub(crate) fn open() -> Result<Radio, &'static [u8]> {
     network_page::read(page).map(Radio).ok_or(b"no page of a network; `onetwo firmware run --udp` writes it")
 }
 
-/// Starts the robot's tasks.
 pub(crate) fn start(
     spawner: Spawner,
     Radio(page): Radio,

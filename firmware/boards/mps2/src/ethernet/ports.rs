@@ -47,7 +47,6 @@ impl RadioSender for UdpSender {
     }
 }
 
-/// Sends orders to the body.
 pub(crate) struct Body {
     pub(crate) socket: &'static UdpSocket<'static>,
     pub(crate) to: SocketAddrV4,

@@ -15,7 +15,6 @@ use embassy_time_queue_utils::Queue;
 use protocol::Instant;
 use static_cell::StaticCell;
 
-/// The board's time and its executor.
 pub(crate) struct Clock {
     executor: &'static Executor,
 }

@@ -29,7 +29,6 @@ pub(crate) struct Inlet {
 }
 
 impl Inlet {
-    /// The next message; sleeps until there is one.
     pub(crate) fn receive(&mut self) -> &[u8] {
         let message = loop {
             let len = self.next_frame();

@@ -25,7 +25,6 @@ use super::clock::Clock;
 use super::eth::{self, Inlet, Outlet};
 use super::{instructions, library, stack};
 
-/// Main loop of the board.
 pub(crate) fn run() -> ! {
     let core = cortex_m::Peripherals::take().expect("taken once, at start");
     instructions::start(core.SYST);

@@ -92,5 +92,4 @@ const FREE_SPEED: f32 = 6.0;
 const RESPONSE_PER_STEP: f32 = 1.0 / 30.0;
 /// Change of the capacitor's voltage in a step of the kicker, V: full in 0.4 s.
 const CHARGE_PER_STEP: f32 = 0.5;
-/// Period of the kicker.
 const KICKER_PERIOD: Duration = Duration::millis(1);

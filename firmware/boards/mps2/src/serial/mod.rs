@@ -12,7 +12,6 @@ use protocol::frame::RobotKeys;
 use runtime::hardware::{self, Wires};
 use runtime::{BrainConfig, Mailboxes, tasks};
 
-/// Mailboxes between the tasks.
 pub(crate) static BOXES: Mailboxes = Mailboxes::new();
 static WIRES: Wires = Wires::new();
 
@@ -21,17 +20,14 @@ pub(crate) fn stop() {
     body::stop();
 }
 
-/// The opened serial line.
 pub(crate) struct Radio(());
 
-/// Opens the serial line.
 #[allow(clippy::unnecessary_wraps, reason = "the other image's radio can be missing")]
 pub(crate) fn open() -> Result<Radio, &'static [u8]> {
     uart::start();
     Ok(Radio(()))
 }
 
-/// Starts the robot's tasks.
 pub(crate) fn start(
     spawner: Spawner,
     _radio: Radio,

@@ -52,7 +52,6 @@ unsafe fn DefaultHandler(number: i16) {
     }
 }
 
-/// Receiver of frames from the serial line.
 pub(crate) struct UartReceiver(Lines);
 
 impl UartReceiver {
@@ -73,7 +72,6 @@ impl RadioReceiver for UartReceiver {
     }
 }
 
-/// Sender of frames to the serial line.
 pub(crate) struct UartSender;
 
 impl RadioSender for UartSender {

@@ -48,7 +48,6 @@ pub(crate) fn run(init: impl FnOnce(Spawner)) -> ! {
     }
 }
 
-/// Time driver of embassy.
 struct Time {
     /// Whole milliseconds since the start; 49 days of them.
     millis: AtomicU32,

@@ -14,7 +14,6 @@ use runtime::ending::Ending;
 use super::console::print;
 use crate::parts;
 
-/// Record of this boot epoch and the last.
 #[derive(Clone, Copy)]
 pub(crate) struct CrashContext {
     /// Starts since power-on, this one included.
@@ -54,17 +53,14 @@ pub(crate) fn crash_context() -> CrashContext {
     start
 }
 
-/// Returns whether this is the first boot epoch since power-on.
 pub(crate) fn is_first_epoch() -> bool {
     with(|crash_context| crash_context.boots) == 1
 }
 
-/// Returns whether the watchdog ended the last boot epoch.
 pub(crate) fn was_bitten() -> bool {
     BITTEN.load(Ordering::Relaxed)
 }
 
-/// Records that the watchdog's time-out has passed.
 pub(crate) fn remember_bite() {
     with(|crash_context| crash_context.bitten = 1);
 }

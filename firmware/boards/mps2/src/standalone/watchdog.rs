@@ -28,7 +28,6 @@ impl Watchdog for BoardWatchdog {
     }
 }
 
-/// Returns whether the watchdog ended the last boot epoch.
 pub(crate) fn has_bitten() -> bool {
     fault::was_bitten()
 }

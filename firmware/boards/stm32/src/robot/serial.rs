@@ -4,9 +4,7 @@ use board_kit::robot::Identity;
 use board_stm32::{drivers, pins};
 use stm32_kit::lines;
 
-/// Sending half of the serial line.
 pub(crate) type Sender = lines::Sender;
-/// Receiving half of the serial line.
 pub(crate) type Receiver = lines::Receiver;
 
 /// Both directions; `None` where the line cannot have its rate.
