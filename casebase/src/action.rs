@@ -56,45 +56,33 @@ impl fmt::Display for CaseRobot {
 #[serde(transparent)]
 pub struct KickId(pub u8);
 
-/// One step of a robot's gameplay.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Action {
-    /// Stay in place until the next action may start.
-    Wait,
-    /// Walk to a point.
-    GoToPoint(PointMm),
-    /// Face a direction or a point.
-    Turn(TurnTarget),
-    /// Go to the ball and hold it.
-    GetBall,
-    /// Carry the ball to a point.
-    DribbleTo(PointMm),
-    /// Kick the ball to a teammate that receives it.
-    PassBall(CaseRobot),
-    /// Receive the ball from the teammate that passes it.
-    ReceiveBall(CaseRobot),
-    /// Kick the ball away.
-    Kick(KickId),
+geometry::labels! {
+    /// One step of a robot's gameplay.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Action {
+        /// Stay in place until the next action may start.
+        Wait = "wait",
+        /// Walk to a point.
+        GoToPoint(PointMm) = "go_to_point",
+        /// Face a direction or a point.
+        Turn(TurnTarget) = "turn",
+        /// Go to the ball and hold it.
+        GetBall = "get_ball",
+        /// Carry the ball to a point.
+        DribbleTo(PointMm) = "dribble_to",
+        /// Kick the ball to a teammate that receives it.
+        PassBall(CaseRobot) = "pass_ball",
+        /// Receive the ball from the teammate that passes it.
+        ReceiveBall(CaseRobot) = "receive_ball",
+        /// Kick the ball away.
+        Kick(KickId) = "kick",
+    }
 }
 
 impl Action {
     /// Returns whether the ball is involved (docs/case-format.md §3.1: "ball action").
     pub const fn concerns_ball(self) -> bool {
         !matches!(self, Self::Wait | Self::GoToPoint(_) | Self::Turn(_))
-    }
-
-    /// Key of the action in case files.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Wait => "wait",
-            Self::GoToPoint(_) => "go_to_point",
-            Self::Turn(_) => "turn",
-            Self::GetBall => "get_ball",
-            Self::DribbleTo(_) => "dribble_to",
-            Self::PassBall(_) => "pass_ball",
-            Self::ReceiveBall(_) => "receive_ball",
-            Self::Kick(_) => "kick",
-        }
     }
 }
 

@@ -140,7 +140,6 @@ impl<'a> Case<'a> {
         partner
     }
 
-    /// The case by its records.
     #[inline]
     pub(crate) fn stored(&self) -> Option<Stored<'_, 'a>> {
         Stored::new(&self.base, self.id)
@@ -188,7 +187,6 @@ impl<'a> Case<'a> {
         self.record_header.legs(self.base.places).unwrap_or(&[])
     }
 
-    /// A point of the case by its number.
     fn point(&self, index: u8) -> PointMm {
         self.group.point(self.base.points, self.copy(), index)
     }

@@ -24,20 +24,16 @@ pub(crate) struct Distances {
     pub(crate) parts: usize,
 }
 
-/// A correspondence and its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Players {
-    /// The player of each part.
     pub(crate) ids: Correspondence,
     /// Sum or maximum of the distances, mm.
     pub(crate) cost: f32,
 }
 
-/// A correspondence with its longest distance.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Assignment {
     pub(crate) players: Players,
-    /// The part with the longest distance.
     pub(crate) farthest: usize,
     /// Distance of that robot, mm.
     pub(crate) distance: f32,

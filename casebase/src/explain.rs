@@ -21,76 +21,63 @@ use crate::settings::RetrievalSettings;
 use crate::stored::Stored;
 use crate::table::CaseBase;
 
-/// Result of a case.
-#[derive(Clone, Debug, PartialEq)]
-pub enum CaseVerdict {
-    /// The ball lies outside the ball's scope.
-    Ball {
-        /// sim_B, at most the threshold.
-        similarity: f32,
-        /// Difference to the threshold.
-        margin: f32,
-    },
-    /// The problem has fewer robots than the case needs.
-    Robots {
-        /// Robots of the case.
-        needed: usize,
-        /// Robots of the problem.
-        present: usize,
-    },
-    /// An adapted position lies outside the field, and the settings reject such cases.
-    OutOfField {
-        /// The robot whose adapted position lies outside.
-        robot: CaseRobot,
-    },
-    /// A robot of the cheapest correspondence exceeds the travel limit; the one with the longest distance is
-    /// reported.
-    TooFar {
-        /// The case robot at whose adapted position the player would start.
-        robot: CaseRobot,
-        /// The player of that part.
-        player: RobotId,
-        /// The player's distance from the adapted position, mm.
-        distance: f32,
-        /// Distance above the limit, mm.
-        margin: f32,
-    },
-    /// An opponent stands in the ball's path.
-    Path {
-        /// Number of the leg, from 0.
-        index: usize,
-        /// The leg, mm, field frame.
-        leg: Leg,
-        /// Number of the opponent in the problem, from 0.
-        opponent: usize,
-        /// Depth of the opponent inside the leg, mm.
-        inside_mm: f32,
-    },
-    /// An opponent scope demands what the problem does not have.
-    Opponents {
-        /// Number of the case's opponent, from 0.
-        scope: usize,
-        /// Demand of the scope.
-        presence: Presence,
-        /// Number of the problem's opponent that stands in an excluding scope, from 0.
-        opponent: Option<usize>,
-    },
-    /// The case is a candidate.
-    Candidate(Match),
-}
-
-impl CaseVerdict {
-    /// Label of the verdict in answers.
-    pub const fn label(&self) -> &'static str {
-        match self {
-            Self::Ball { .. } => "ball",
-            Self::Robots { .. } => "robots",
-            Self::OutOfField { .. } => "out_of_field",
-            Self::TooFar { .. } => "thr_c",
-            Self::Path { .. } => "path",
-            Self::Opponents { .. } => "opponents",
-            Self::Candidate(_) => "candidate",
-        }
+geometry::labels! {
+    /// Result of a case.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum CaseVerdict {
+        /// The ball lies outside the ball's scope.
+        Ball {
+            /// sim_B, at most the threshold.
+            similarity: f32,
+            /// Difference to the threshold.
+            margin: f32,
+        } = "ball",
+        /// The problem has fewer robots than the case needs.
+        Robots {
+            /// Robots of the case.
+            needed: usize,
+            /// Robots of the problem.
+            present: usize,
+        } = "robots",
+        /// An adapted position lies outside the field, and the settings reject such cases.
+        OutOfField {
+            /// The robot whose adapted position lies outside.
+            robot: CaseRobot,
+        } = "out_of_field",
+        /// A robot of the cheapest correspondence exceeds the travel limit; the one with the longest distance is
+        /// reported.
+        TooFar {
+            /// The case robot at whose adapted position the player would start.
+            robot: CaseRobot,
+            /// The player of that part.
+            player: RobotId,
+            /// The player's distance from the adapted position, mm.
+            distance: f32,
+            /// Distance above the limit, mm.
+            margin: f32,
+        } = "thr_c",
+        /// An opponent stands in the ball's path.
+        Path {
+            /// Number of the leg, from 0.
+            index: usize,
+            /// The leg, mm, field frame.
+            leg: Leg,
+            /// Number of the opponent in the problem, from 0.
+            opponent: usize,
+            /// Depth of the opponent inside the leg, mm.
+            inside_mm: f32,
+        } = "path",
+        /// An opponent scope demands what the problem does not have.
+        Opponents {
+            /// Number of the case's opponent, from 0.
+            scope: usize,
+            /// Demand of the scope.
+            presence: Presence,
+            /// Number of the problem's opponent that stands in an excluding scope, from 0.
+            opponent: Option<usize>,
+        } = "opponents",
+        /// The case is a candidate.
+        Candidate(Match) = "candidate",
     }
 }
 

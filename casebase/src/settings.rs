@@ -56,9 +56,7 @@ geometry::labels! {
         /// Only correspondences within the limit are searched (the text of §3.2).
         Constrained = "constrained",
     }
-}
 
-geometry::labels! {
     /// Cost of a correspondence.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     pub enum CostRule {
@@ -67,9 +65,7 @@ geometry::labels! {
         /// The largest of the distances.
         Max = "max",
     }
-}
 
-geometry::labels! {
     /// One step of the ranking.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Criterion {
@@ -80,9 +76,7 @@ geometry::labels! {
         /// Higher similarity interval, then lower cost.
         IntervalCost = "interval-cost",
     }
-}
 
-geometry::labels! {
     /// Treatment of an adapted position outside the lines.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     pub enum OutOfField {
@@ -93,9 +87,7 @@ geometry::labels! {
         /// The case is not a candidate.
         Reject = "reject",
     }
-}
 
-geometry::labels! {
     /// Position of the opponents' scopes.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     pub enum ScopeRule {
@@ -104,9 +96,7 @@ geometry::labels! {
         /// At the case's own positions, as in the paper's formula.
         Absolute = "absolute",
     }
-}
 
-geometry::labels! {
     /// Required freedom of a path.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     pub enum FreePathRule {
@@ -216,19 +206,29 @@ fn parse_number(value: &str, allowed: impl Fn(f32) -> bool) -> Option<f32> {
     value.parse().ok().filter(|number: &f32| number.is_finite() && allowed(*number))
 }
 
+/// A setting that is one of an enum's labels, or a number that is allowed.
+macro_rules! setting {
+    ($name:literal, $field:ident: $rule:ident, $expected:literal) => {
+        Setting {
+            name: $name,
+            expected: $expected,
+            set: |s, v| $rule::from_label(v).map(|v| s.$field = v),
+            get: |s, out| out.write_str(s.$field.label()),
+        }
+    };
+    ($name:literal, $field:ident, $expected:literal, $allowed:expr) => {
+        Setting {
+            name: $name,
+            expected: $expected,
+            set: |s, v| parse_number(v, $allowed).map(|v| s.$field = v),
+            get: |s, out| write!(out, "{}", s.$field),
+        }
+    };
+}
+
 const SETTINGS: &[Setting] = &[
-    Setting {
-        name: "correspondence",
-        expected: "min-then-test or constrained",
-        set: |s, v| CorrespondenceRule::from_label(v).map(|v| s.correspondence = v),
-        get: |s, out| out.write_str(s.correspondence.label()),
-    },
-    Setting {
-        name: "cost",
-        expected: "sum or max",
-        set: |s, v| CostRule::from_label(v).map(|v| s.cost = v),
-        get: |s, out| out.write_str(s.cost.label()),
-    },
+    setting!("correspondence", correspondence: CorrespondenceRule, "min-then-test or constrained"),
+    setting!("cost", cost: CostRule, "sum or max"),
     Setting {
         name: "ranking",
         expected: "conditions,teammates,interval-cost in any order",
@@ -238,48 +238,13 @@ const SETTINGS: &[Setting] = &[
             write!(out, "{a},{b},{c}")
         },
     },
-    Setting {
-        name: "out_of_field",
-        expected: "keep, clamp or reject",
-        set: |s, v| OutOfField::from_label(v).map(|v| s.out_of_field = v),
-        get: |s, out| out.write_str(s.out_of_field.label()),
-    },
-    Setting {
-        name: "scopes",
-        expected: "translated or absolute",
-        set: |s, v| ScopeRule::from_label(v).map(|v| s.scopes = v),
-        get: |s, out| out.write_str(s.scopes.label()),
-    },
-    Setting {
-        name: "free_path",
-        expected: "crisp or fuzzy",
-        set: |s, v| FreePathRule::from_label(v).map(|v| s.free_path = v),
-        get: |s, out| out.write_str(s.free_path.label()),
-    },
-    Setting {
-        name: "thr_c",
-        expected: "a distance in mm, 0 or more",
-        set: |s, v| parse_number(v, |n| n >= 0.0).map(|v| s.travel_max_mm = v),
-        get: |s, out| write!(out, "{}", s.travel_max_mm),
-    },
-    Setting {
-        name: "thr",
-        expected: "a number above 0 and below 1",
-        set: |s, v| parse_number(v, |n| n > 0.0 && n < 1.0).map(|v| s.threshold = v),
-        get: |s, out| write!(out, "{}", s.threshold),
-    },
-    Setting {
-        name: "free_min",
-        expected: "a number from 0 to 1",
-        set: |s, v| parse_number(v, |n| (0.0..=1.0).contains(&n)).map(|v| s.free_min = v),
-        get: |s, out| write!(out, "{}", s.free_min),
-    },
-    Setting {
-        name: "lookahead",
-        expected: "a time in s from 0 to 3",
-        set: |s, v| parse_number(v, |n| (0.0..=LOOKAHEAD_MAX_S).contains(&n)).map(|v| s.lookahead_s = v),
-        get: |s, out| write!(out, "{}", s.lookahead_s),
-    },
+    setting!("out_of_field", out_of_field: OutOfField, "keep, clamp or reject"),
+    setting!("scopes", scopes: ScopeRule, "translated or absolute"),
+    setting!("free_path", free_path: FreePathRule, "crisp or fuzzy"),
+    setting!("thr_c", travel_max_mm, "a distance in mm, 0 or more", |n| n >= 0.0),
+    setting!("thr", threshold, "a number above 0 and below 1", |n| n > 0.0 && n < 1.0),
+    setting!("free_min", free_min, "a number from 0 to 1", |n| (0.0..=1.0).contains(&n)),
+    setting!("lookahead", lookahead_s, "a time in s from 0 to 3", |n| (0.0..=LOOKAHEAD_MAX_S).contains(&n)),
 ];
 
 #[cfg(test)]

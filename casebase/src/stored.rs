@@ -10,7 +10,6 @@ use crate::action::FieldMm;
 use crate::leg::{Corridor, minus};
 use crate::table::{CaseBase, OpponentRecord, RawLeg, RecordHeader};
 
-/// The records of a stored case.
 #[derive(Clone, Copy)]
 pub(crate) struct Stored<'q, 'a> {
     pub(crate) base: &'q CaseBase<'a>,

@@ -54,7 +54,6 @@ struct Errors {
     rest_last: Mean,
 }
 
-/// Mean of numbers.
 #[derive(Default)]
 struct Mean {
     sum: f64,

@@ -18,7 +18,6 @@
 mod air;
 pub mod four_legged;
 mod hash;
-mod labels;
 mod mcu;
 mod meter;
 mod native;

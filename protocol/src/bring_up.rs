@@ -6,22 +6,24 @@
 //! robots do not open it, and `onetwo control` refuses it for its payload. [`Frame`]'s epoch and counter
 //! order the frames, and [`BringUpReport::host`] distinguishes a robot that is on from a recording.
 
-use core::fmt;
-
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 use crate::frame::{Frame, Key, OVERHEAD, Refusal, Sender, TeamKeys, decode, packet};
 use crate::link::Packet;
 use crate::{RobotId, TeamId};
 
-/// A check of the list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A check of the list; as text what is checked, and what a person has to see or do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Error)]
 pub enum Check {
     /// The battery's voltage is measured, and within that of four cells.
+    #[error("battery: nothing moves")]
     Battery,
     /// At rest wheels stand, the gyroscope knows its offset and the robot does not lie on its side.
+    #[error("sensors at rest: leave the robot alone")]
     Rest,
     /// One wheel turns the way it is driven, and no other does.
+    #[error("{} wheel: it turns, as to turn the robot {}", wheel_name(*wheel), way(*forwards))]
     Wheel {
         /// 0 to 3: front right, back right, back left, front left.
         wheel: u8,
@@ -30,8 +32,10 @@ pub enum Check {
         forwards: bool,
     },
     /// Frames of the host arrive.
+    #[error("radio: a host of its team sends")]
     Radio,
     /// The beam is interrupted by a ball that is held before the dribbler, and free again without it.
+    #[error("break-beam sensor: hold a ball before the dribbler, then take it away")]
     Beam,
 }
 
@@ -73,110 +77,77 @@ impl Check {
     }
 }
 
-/// Wheels of a robot.
-const WHEELS: usize = 4;
-const NAMES: [&str; WHEELS] = ["front right", "back right", "back left", "front left"];
-
-impl fmt::Display for Check {
-    /// Writes what is checked, and what a person has to see or do.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Battery => f.write_str("battery: nothing moves"),
-            Self::Rest => f.write_str("sensors at rest: leave the robot alone"),
-            Self::Wheel { wheel, forwards } => {
-                let name = NAMES.get(usize::from(*wheel)).copied().unwrap_or("no");
-                let way = if *forwards { "counter-clockwise" } else { "clockwise" };
-                write!(f, "{name} wheel: it turns, as to turn the robot {way}")
-            }
-            Self::Radio => f.write_str("radio: a host of its team sends"),
-            Self::Beam => {
-                f.write_str("break-beam sensor: hold a ball before the dribbler, then take it away")
-            }
-        }
-    }
+/// Name of a wheel by its number, 0 to 3.
+fn wheel_name(wheel: u8) -> &'static str {
+    ["front right", "back right", "back left", "front left"].get(usize::from(wheel)).copied().unwrap_or("no")
 }
 
-/// Fault that a check has found.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+const fn way(forwards: bool) -> &'static str {
+    if forwards { "counter-clockwise" } else { "clockwise" }
+}
+
+/// Fault that a check has found; as text what was measured, and what to look at.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Error)]
 pub enum Finding {
     /// The battery's voltage is not measured.
+    #[error("no voltage is measured: the divider's wire")]
     NoVoltage,
     /// The battery's voltage, V, is none of four cells.
+    #[error("{0:.1} V is none of four cells: charge it, or measure the divider")]
     Voltage(f32),
     /// No gyroscope answers, or it never came to rest.
+    #[error("no gyroscope: power, wires and chip select of the IMU; was it moved?")]
     NoGyroscope,
     /// The turning rate at rest, rad/s.
+    #[error("it turns by {0:.2} rad/s at rest: the IMU is loose, or was moved")]
     Drifts(f32),
     /// The robot lies on its side, by its accelerometer.
+    #[error("it lies on its side, says the IMU: its z axis must point up")]
     Tipped,
     /// This wheel moves although none is driven, m/s.
+    #[error("the {} wheel runs {:.2} m/s by itself: encoder's ground and shield, or a driver that is always on", wheel_name(*.0), .1)]
     MovesAlone(u8, f32),
     /// This wheel's encoder is known to be broken.
+    #[error("the {} wheel's encoder is broken: cable and supply", wheel_name(*.0))]
     NoEncoder(u8),
     /// The wheel is driven and no encoder sees anything.
+    #[error("nothing turns: motor's cable, its driver and its enable; if it does turn, the encoder's cable")]
     NoMotion,
     /// The wheel runs the wrong way, m/s.
+    #[error(
+        "it runs the wrong way, {0:.2} m/s: if it looks right, swap the encoder's two lines, else two phases or the direction's wire"
+    )]
     Reversed(f32),
     /// Another wheel's encoder counts in its place, m/s.
+    #[error("the encoder of the {} wheel counts {:.2} m/s in its place: swap the two encoders' cables, or the two motors'", wheel_name(*.0), .1)]
     CountedBy(u8, f32),
     /// Another wheel moves too, m/s.
+    #[error("the {} wheel moves too, {:.2} m/s: a driver's inputs are joined", wheel_name(*.0), .1)]
     MovesToo(u8, f32),
     /// Speed of the wheel, and that by the motor's constant, m/s.
+    #[error("{0:.2} m/s, not {1:.2}: gear, friction, lines of the encoder, or the wheel's radius")]
     Speed(f32, f32),
     /// The wheel does not stop without current, m/s.
+    #[error("{0:.2} m/s a second after its current was off: its driver's enable")]
     KeepsTurning(f32),
     /// No frame and no noise was received.
+    #[error("nothing received: is a host of its team running; power and wires of the radio")]
     Silent,
     /// Frames received and lost.
+    #[error("{} of {} frames lost: antenna, plug, channel", .1, .0.saturating_add(*.1))]
     Loses(u32, u32),
     /// Errors of the line, and frames received.
+    #[error("{0} errors on the radio's line beside {1} frames: its rate, ground and plug")]
     LineErrors(u32, u32),
     /// The beam is interrupted without a ball.
+    #[error("interrupted without a ball: align lamp and sensor; daylight")]
     Blocked,
     /// The beam was never interrupted.
+    #[error("never interrupted: lamp and sensor face each other behind the ball, or its wire is stuck")]
     NeverInterrupted,
     /// The beam stayed interrupted.
+    #[error("still interrupted after the ball was taken away, or it was not taken away")]
     StaysInterrupted,
-}
-
-impl fmt::Display for Finding {
-    /// Writes what was measured, and what to look at.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = |wheel: &u8| NAMES.get(usize::from(*wheel)).copied().unwrap_or("no");
-        match self {
-            Self::NoVoltage => f.write_str("no voltage is measured: the divider's wire"),
-            Self::Voltage(volts) => write!(f, "{volts:.1} V is none of four cells: charge it, or measure the divider"),
-            Self::NoGyroscope => f.write_str("no gyroscope: power, wires and chip select of the IMU; was it moved?"),
-            Self::Drifts(rate) => write!(f, "it turns by {rate:.2} rad/s at rest: the IMU is loose, or was moved"),
-            Self::Tipped => f.write_str("it lies on its side, says the IMU: its z axis must point up"),
-            Self::MovesAlone(wheel, speed) => {
-                write!(f, "the {} wheel runs {speed:.2} m/s by itself: encoder's ground and shield, or a driver that is always on", name(wheel))
-            }
-            Self::NoEncoder(wheel) => write!(f, "the {} wheel's encoder is broken: cable and supply", name(wheel)),
-            Self::NoMotion => f.write_str("nothing turns: motor's cable, its driver and its enable; if it does turn, the encoder's cable"),
-            Self::Reversed(speed) => {
-                write!(f, "it runs the wrong way, {speed:.2} m/s: if it looks right, swap the encoder's two lines, else two phases or the direction's wire")
-            }
-            Self::CountedBy(wheel, speed) => {
-                write!(f, "the encoder of the {} wheel counts {speed:.2} m/s in its place: swap the two encoders' cables, or the two motors'", name(wheel))
-            }
-            Self::MovesToo(wheel, speed) => {
-                write!(f, "the {} wheel moves too, {speed:.2} m/s: a driver's inputs are joined", name(wheel))
-            }
-            Self::Speed(speed, expected) => {
-                write!(f, "{speed:.2} m/s, not {expected:.2}: gear, friction, lines of the encoder, or the wheel's radius")
-            }
-            Self::KeepsTurning(speed) => write!(f, "{speed:.2} m/s a second after its current was off: its driver's enable"),
-            Self::Silent => f.write_str("nothing received: is a host of its team running; power and wires of the radio"),
-            Self::Loses(received, lost) => write!(f, "{lost} of {} frames lost: antenna, plug, channel", received.saturating_add(*lost)),
-            Self::LineErrors(errors, received) => {
-                write!(f, "{errors} errors on the radio's line beside {received} frames: its rate, ground and plug")
-            }
-            Self::Blocked => f.write_str("interrupted without a ball: align lamp and sensor; daylight"),
-            Self::NeverInterrupted => f.write_str("never interrupted: lamp and sensor face each other behind the ball, or its wire is stuck"),
-            Self::StaysInterrupted => f.write_str("still interrupted after the ball was taken away, or it was not taken away"),
-        }
-    }
 }
 
 /// The result of a check; what passed has the value that was measured, in the check's unit (V, rad/s, m/s,

@@ -318,7 +318,6 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Bytes of all tags of a frame.
 const fn tags_len(audience: Option<Audience>) -> usize {
     match audience {
         None => TAG_LEN,

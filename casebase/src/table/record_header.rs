@@ -85,7 +85,6 @@ impl RecordHeader {
         gauss_exponent(ball[0] - self.ball[0], ball[1] - self.ball[1], inverse_x, inverse_y)
     }
 
-    /// Demands of the opponent scopes.
     #[inline]
     pub(crate) const fn demands(&self) -> Demands {
         Demands::from_bits(self.demands)

@@ -15,7 +15,6 @@ use crate::four_legged::drift::Drift;
 use crate::four_legged::parameters::Noise;
 use crate::rng::Stream;
 
-/// Camera and head of one robot.
 #[derive(Clone, Debug)]
 pub(crate) struct Camera {
     noise: Noise,
@@ -28,7 +27,6 @@ pub(crate) struct Camera {
     dt: f32,
 }
 
-/// Size of an object's image and the range of its detection.
 #[derive(Clone, Copy)]
 struct Image {
     /// Size by which the range is measured, m.

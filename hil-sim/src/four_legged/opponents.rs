@@ -21,7 +21,7 @@ use crate::four_legged::parameters::{Noise, Parameters, Region};
 use crate::four_legged::world::LeggedWorld;
 use crate::rng::Stream;
 
-crate::labels! {
+geometry::labels! {
     /// Task of an opponent.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
     #[serde(rename_all = "lowercase")]

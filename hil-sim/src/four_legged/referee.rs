@@ -12,20 +12,19 @@ use crate::four_legged::opponents::OpponentRole;
 use crate::four_legged::parameters::RefereeParameters;
 use crate::four_legged::world::{LeggedWorld, Side, WorldEvent};
 
-crate::labels! {
+geometry::labels! {
     /// Opponents of a trial (paper §5.1.2, Fig. 11).
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Configuration {
         /// A defender and the goalie play.
+        #[default]
         #[serde(rename = "dg")]
         DefenderGoalie = "dg",
         /// Midfield defender and defender.
         #[serde(rename = "2d")]
         TwoDefenders = "2d",
     }
-}
 
-crate::labels! {
     /// Outcome of a trial.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
@@ -86,7 +85,6 @@ pub struct Referee {
     verdict: Option<TrialVerdict>,
 }
 
-/// An opponent's contacts with the ball.
 #[derive(Clone, Copy, Debug, Default)]
 struct Contact {
     /// Time of the last touch, s.

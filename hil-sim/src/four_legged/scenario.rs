@@ -16,11 +16,12 @@ use crate::four_legged::parameters::Parameters;
 use crate::four_legged::referee::Configuration;
 use crate::rng::Stream;
 
-crate::labels! {
+geometry::labels! {
     /// A scenario, by the paper's number or `random`.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum Scenario {
         /// 1: ball and attackers in the middle-back.
+        #[default]
         MiddleBack = "1",
         /// 2: ball and attackers on the left side.
         LeftSide = "2",

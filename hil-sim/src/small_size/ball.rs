@@ -139,7 +139,6 @@ impl Ball {
     }
 }
 
-/// Parameters of an impact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Impact {
     /// Share of the closing speed that comes back.

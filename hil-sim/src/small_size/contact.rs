@@ -19,7 +19,6 @@ enum Obstacle {
 }
 
 impl World {
-    /// Moves the ball for a step, with bounces on obstacles.
     pub(super) fn move_ball(&mut self) {
         let before = self.ball;
         self.ball.advance(&self.parameters.ball, STEP);

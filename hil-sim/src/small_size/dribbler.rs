@@ -13,7 +13,6 @@ use super::robot::Robot;
 use super::{Ball, STEP, World};
 
 impl World {
-    /// Fires kickers that are armed, charged and have the ball.
     pub(super) fn kick(&mut self) {
         let of = self.parameters.kick;
         for k in 0..self.near_ball.len() {
@@ -56,7 +55,6 @@ impl World {
         }
     }
 
-    /// Pulls the ball by dribblers.
     pub(super) fn dribble(&mut self) {
         if self.ball.height > DRIBBLE_HEIGHT {
             return;

@@ -86,7 +86,6 @@ pub struct World {
     highest_robot: f32,
 }
 
-/// A force pulls the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct BallDrag {
     to: Point<Field>,

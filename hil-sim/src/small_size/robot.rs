@@ -276,7 +276,6 @@ impl Robot {
         self.velocity + Vector::new(-arm.y(), arm.x()) * self.turning
     }
 
-    /// Advances wheels and body by one step.
     pub(super) fn drive(&mut self, now: u64, battery: &BatteryParameters) {
         let settled = self.settled && self.is_led(now) && !self.tipped && self.dragged.is_none();
         if settled && self.cruise == Some(self.velocity) {

@@ -5,7 +5,6 @@
 
 use super::parameters::BodyParameters;
 
-/// The nearest point of a body's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Nearest {
     /// Distance, m, negative inside.

@@ -82,7 +82,6 @@ pub(super) fn has_ball(world: &World) -> bool {
     world.robot(yellow(1)).unwrap().ball_contact
 }
 
-/// True where one of the events is a kick.
 fn has_kick(events: &[PhysicsEvent]) -> bool {
     events.iter().any(|event| matches!(event, PhysicsEvent::Kicked { .. }))
 }

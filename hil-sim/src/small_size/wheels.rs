@@ -6,7 +6,6 @@
 
 use geometry::Angle;
 
-/// Solved kinematics of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wheels {
     /// For v_x, v_y, ω of 1 each: the rim speeds of the four wheels.

@@ -20,7 +20,6 @@ enum Activity {
     Walk,
 }
 
-/// Counts the ticks of each activity.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ActivityCount {
     ticks: [u32; 7],

@@ -80,7 +80,6 @@ pub(crate) const fn shot_label(rule: ShotRule) -> Option<&'static str> {
     })
 }
 
-/// The label of an abort reason.
 const fn abort_label(reason: AbortReason) -> &'static str {
     match reason {
         AbortReason::BallOutOfScope => "ball-out-of-scope",

@@ -54,7 +54,6 @@ impl CaseNames {
     }
 }
 
-/// Symmetry of a stored case.
 pub(crate) fn symmetry(case: CaseId) -> &'static str {
     Symmetry::from_bits(case.0).label()
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::trial::TrialConfig;
 
-hil_sim::labels! {
+geometry::labels! {
     /// The world trials are played in.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]

@@ -373,7 +373,6 @@ pub const fn positioning_label(positioning: Positioning) -> &'static str {
 
 /// The attackers' team on the radio.
 pub const TEAM: TeamId = TeamId(1);
-/// The league of trials.
 const LEAGUE: &str = "four-legged";
 
 #[cfg(test)]

@@ -29,7 +29,6 @@ impl Default for Beliefs {
 }
 
 impl Beliefs {
-    /// Takes the current view of `us`.
     pub(super) fn watch(&mut self, us: Colour, view: &View) {
         self.of[us as usize].watch(view, kicker(view));
     }

@@ -12,7 +12,6 @@ const CAMERAS_MAX: usize = 16;
 /// A frame number that jumps by more than this is a restarted camera, not a loss: 1 s at 100 Hz.
 const JUMP_MAX: u32 = 100;
 
-/// All cameras seen.
 #[derive(Debug, Default)]
 pub(super) struct Cameras {
     cameras: BTreeMap<u32, Camera>,
@@ -32,7 +31,6 @@ struct Camera {
 }
 
 impl Cameras {
-    /// A datagram of the vision.
     pub(super) fn receive(&mut self, bytes: &[u8]) {
         let Some(head) = FrameHead::of(bytes) else { return };
         if self.cameras.len() >= CAMERAS_MAX && !self.cameras.contains_key(&head.camera_id) {
@@ -52,7 +50,6 @@ impl Cameras {
         camera.delay_ms += if (0.0..10_000.0).contains(&delay) { delay } else { 0.0 };
     }
 
-    /// Every camera at `t`.
     pub(super) fn look(&mut self, t: f64) -> Vec<CameraNote> {
         self.cameras.iter_mut().map(|(id, camera)| camera.look(*id, t)).collect()
     }

@@ -16,7 +16,6 @@ use super::layers::Played;
 use super::names::Names;
 use super::{description, minds, team};
 
-/// Cycles of one team.
 #[derive(Debug, Default)]
 pub(crate) struct TeamCycles {
     log: CycleLog,
@@ -26,7 +25,6 @@ pub(crate) struct TeamCycles {
     reported_none: bool,
     /// A decision whose problem its coordinator has not reported whole yet.
     awaited: Option<Awaited>,
-    /// The newest decision.
     decided: Option<DecisionNote>,
     /// The decisions reported by the last call, with the times at which they were received.
     reported_decisions: Vec<(f64, DecisionNote)>,
@@ -185,7 +183,6 @@ impl TeamCycles {
     }
 }
 
-/// A coordinator's own report of its decision.
 pub(crate) fn reported(by: RobotId, report: &DecisionReport) -> DecisionNote {
     DecisionNote {
         reported: true,

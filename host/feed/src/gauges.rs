@@ -17,7 +17,6 @@ const LOSS_MAX_PERCENT: f32 = 10.0;
 /// Longest tick, ms: brains step every 10 ms.
 const TICK_MS: f32 = 10.0;
 
-/// Counts packets and computes their rate.
 #[derive(Debug, Default)]
 pub(super) struct Rate {
     since: Option<(f64, u64)>,
@@ -102,7 +101,6 @@ pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge>
     out
 }
 
-/// Values of the team's own strategy.
 fn strategy(out: &mut Vec<Gauge>, host: &Host) {
     let Some((_, drawing)) = host.strategy_drawing() else { return };
     let group = format!("strategy, {}", host.settings().us.label());

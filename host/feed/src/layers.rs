@@ -16,7 +16,6 @@ use super::description::spaced;
 /// A keep-out zone larger than this share of the field is drawn by its border alone.
 const FILLED_AREA_MAX: f32 = 0.35;
 
-/// A case in play by a team.
 pub(super) struct Played<'a> {
     pub(super) case: Case<'a>,
     pub(super) name: String,
@@ -32,7 +31,6 @@ impl<'a> Played<'a> {
         Some(Self { case: base.case(play.case)?, name: name(play.case), play })
     }
 
-    /// The place of a robot that takes part.
     pub(super) fn place_of(&self, robot: RobotId) -> Option<(CaseRobot, [f32; 2])> {
         let part = CaseRobot::new(self.play.part_of(robot)?)?;
         Some((part, mm(self.case.adapted(part, self.play.ball.into()))))

@@ -67,7 +67,6 @@ impl EventFeed {
         self.events = referee.events().len();
     }
 
-    /// A detected kick.
     pub(super) fn kick(&mut self, kick: Option<Kick>, t: f64, into: &mut Vec<MatchEvent>) {
         let Some(kick) = kick else { return };
         let same =

@@ -422,7 +422,6 @@ pub trait MatchObserver {
     fn note(&mut self, line: &str);
 }
 
-/// Takes the packets that both teams receive.
 struct Feed {
     composer: Composer,
     ledger: LedgerFeed,

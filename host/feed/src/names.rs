@@ -3,7 +3,6 @@
 use arena::cases::LibraryHandle;
 use protocol::CaseId;
 
-/// Names and intents of the cases.
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     names: Vec<String>,

@@ -5,7 +5,6 @@ use host::world::World;
 use protocol::Who;
 use rules::{Colour, FieldSpec, League, RuleRole};
 
-/// A robot and the position it is ordered to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aim {
     pub(super) who: Who,
@@ -13,7 +12,6 @@ pub(super) struct Aim {
     pub(super) rule_role: RuleRole,
 }
 
-/// Inputs of the overlays of a moment.
 #[derive(Clone, Debug)]
 pub(super) struct OverlayInput {
     /// Seconds since the start.

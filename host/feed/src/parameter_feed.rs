@@ -23,7 +23,6 @@ pub struct ParameterFeed {
     sent: Option<Instant>,
 }
 
-/// A team's parameters as the page gets them.
 #[derive(Serialize)]
 struct TeamParameters {
     team: PageTeam,
@@ -65,7 +64,6 @@ impl KickTest {
     }
 }
 
-/// A learned value beside a parameter.
 #[derive(Serialize)]
 struct LearnedValue {
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -20,7 +20,6 @@ const ARRIVED_WITHIN_M: f32 = 0.03;
 /// Least distance between bodies, and added to the rules' distances, m: as the robot's own.
 const MARGIN_M: f32 = 0.03;
 
-/// Plans the paths of one team's robots at a moment.
 pub(super) struct Paths<'a> {
     pub(super) world: &'a World,
     pub(super) phase: Phase<Colour>,

@@ -13,7 +13,6 @@ const PACKETS_MAX: usize = 8;
 /// A camera whose frame is older than the newest by more than this, s, is left out: it sees nothing any more.
 const OLD_S: f64 = 0.2;
 
-/// The newest packets.
 #[derive(Debug, Default)]
 pub(super) struct Images {
     packets: VecDeque<Vec<u8>>,

@@ -63,7 +63,6 @@ struct Last {
     stage: i32,
     /// Place for the ball, mm, where a command asks for that.
     place: Option<[i32; 2]>,
-    /// Yellow's and blue's.
     teams: [Account; 2],
 }
 
@@ -143,19 +142,13 @@ impl RefereeEventFinder {
                     format!("{colour}, blue {blue} : {yellow} yellow"),
                 );
             }
-            if now.yellow_cards > before.yellow_cards {
-                line(
-                    RefereeEventKind::Card,
-                    "YELLOW_CARD".to_owned(),
-                    format!("{colour}, {} in all", now.yellow_cards),
-                );
-            }
-            if now.red_cards > before.red_cards {
-                line(
-                    RefereeEventKind::Card,
-                    "RED_CARD".to_owned(),
-                    format!("{colour}, {} in all", now.red_cards),
-                );
+            for (name, before, now) in [
+                ("YELLOW_CARD", before.yellow_cards, now.yellow_cards),
+                ("RED_CARD", before.red_cards, now.red_cards),
+            ] {
+                if now > before {
+                    line(RefereeEventKind::Card, name.to_owned(), format!("{colour}, {now} in all"));
+                }
             }
             if let Some(max_bots) = now.max_bots.filter(|_| now.max_bots != before.max_bots) {
                 line(RefereeEventKind::MaxBots, "MAX_BOTS".to_owned(), format!("{colour}, {max_bots}"));

@@ -25,10 +25,8 @@ impl Watcher for Feed {
     }
 }
 
-/// What is collected from a match for the tests.
 #[derive(Default)]
 struct Played {
-    /// Its last scene.
     scene: Scene,
     match_events: Vec<MatchEvent>,
     /// The most bytes that a scene took.

@@ -79,7 +79,6 @@ impl Peak {
     }
 }
 
-/// The links of all robots.
 #[derive(Debug, Default)]
 pub(super) struct Links {
     robots: BTreeMap<(bool, u8), (Window<9>, [Peak; 6])>,

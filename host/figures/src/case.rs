@@ -84,7 +84,6 @@ fn scene<'p>(picture: &'p CasePicture<'p>, zoom: f64) -> Pen {
     pen
 }
 
-/// A case for one position of the ball.
 struct Scene<'p, 'a> {
     picture: &'p CasePicture<'a>,
     settings: &'p RetrievalSettings,

@@ -307,7 +307,6 @@ impl Table {
 }
 
 impl ColumnKind {
-    /// Class of the column's heading.
     const fn class(self) -> Option<&'static str> {
         match self {
             Self::Name => Some("name"),

@@ -161,7 +161,6 @@ impl Ablation<'_> {
     }
 }
 
-/// The arm, its differences, what it changes.
 fn columns() -> Vec<Column> {
     let measures = MEASURES.iter().map(|measure| Column::number(measure.head, measure.unit));
     [Column::name("arm")].into_iter().chain(measures).chain([Column::text("what is changed")]).collect()

@@ -3,7 +3,6 @@
 use study::evaluation::{Measure, TableRow};
 use study::statistics::{Interval, newcombe, student, wilson};
 
-/// A column of a table.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MeasureColumn {
     pub(crate) head: &'static str,
@@ -39,7 +38,6 @@ impl MeasureColumn {
         Self { head, unit, decimals, value: ColumnValue::Described(of) }
     }
 
-    /// The value of a row.
     pub(crate) fn value(&self, row: &TableRow) -> Option<f64> {
         match self.value {
             ColumnValue::Measured(measure) => measure.value(row),

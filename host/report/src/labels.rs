@@ -5,7 +5,6 @@ use arena::approach_label;
 use brain::Approach;
 use hil_sim::{Configuration, Scenario};
 
-/// Label of an approach.
 pub(crate) fn approach(approach: Approach) -> &'static str {
     match approach_label(approach) {
         "cbr" => "case-based",

@@ -12,7 +12,6 @@ use crate::plot::{TablePlot, plots};
 use crate::table::tables;
 use crate::{Facts, Report, labels, map};
 
-/// The whole page.
 pub(crate) fn page(report: &Report<'_>) -> String {
     let (plots, tables) = (plots(report), tables(report));
     let header = html! {

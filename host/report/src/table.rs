@@ -30,7 +30,6 @@ pub(crate) struct Block {
     pub(crate) lines: Vec<Line>,
 }
 
-/// A line of a block.
 #[derive(Debug)]
 pub(crate) struct Line {
     pub(crate) kind: LineKind,
@@ -40,7 +39,6 @@ pub(crate) struct Line {
     pub(crate) cells: Vec<Cell>,
 }
 
-/// Contents of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LineKind {
     /// Our numbers, of this number of trials.
@@ -79,7 +77,6 @@ impl PaperTable {
         (!blocks.is_empty()).then_some(Self { number, columns, blocks })
     }
 
-    /// The table as HTML.
     pub(crate) fn html(&self) -> Markup {
         let numbers = self.columns.iter().map(|column| Column::number(column.head, column.unit));
         let mut table = Table::new([Column::name("scenario, attackers")].into_iter().chain(numbers));
@@ -241,7 +238,6 @@ impl Line {
         }
     }
 
-    /// Number of trials, of both sides where they differ.
     pub(crate) fn trials(&self) -> Option<String> {
         match self.kind {
             LineKind::Ours(trials) | LineKind::Paper(trials) => Some(trials.to_string()),

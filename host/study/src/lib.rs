@@ -26,3 +26,5 @@ pub mod scenes;
 pub mod skills;
 pub mod statistics;
 pub mod store;
+#[cfg(test)]
+mod testing;

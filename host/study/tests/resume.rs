@@ -86,7 +86,6 @@ fn threads_shards_and_interrupts_change_nothing() {
     }
 }
 
-/// A shard of three.
 fn third(index: usize) -> Shard {
     Shard::new(index, 3).unwrap()
 }

@@ -24,6 +24,14 @@ impl Colour {
             Self::Blue => Self::Yellow,
         }
     }
+
+    /// The value of this team, of both teams' values.
+    pub fn pick<T>(self, yellow: T, blue: T) -> T {
+        match self {
+            Self::Yellow => yellow,
+            Self::Blue => blue,
+        }
+    }
 }
 
 /// A team from the side of one of them.

@@ -66,7 +66,6 @@ fn report(link: &mut Link) -> Packet {
     link.seal(&TeamMessage::Telemetry(telemetry))
 }
 
-/// A robot and its host after their handshake.
 fn after_handshake() -> (Link, HostLink) {
     let (mut link, mut host) = (link(2, 9), host(70));
     assert!(matches!(host.open(NOW, &report(&mut link)), Ok(Opened::Unauthenticated(..))));

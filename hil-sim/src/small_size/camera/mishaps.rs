@@ -10,7 +10,6 @@ use crate::rng::Stream;
 use crate::small_size::World;
 use crate::small_size::worlds::VisionModel;
 
-/// Faults of the frames of all cameras of one field.
 #[derive(Clone, Debug)]
 pub(super) struct Mishaps {
     of: VisionModel,
@@ -94,10 +93,7 @@ impl Mishaps {
     /// Swaps the numbers as they are detected now.
     pub(super) fn swap_ids(&self, frame: &mut DetectionFrame) {
         let Some(Swap { robots: [one, other], .. }) = self.swap else { return };
-        let team = match one.colour {
-            Colour::Yellow => &mut frame.robots_yellow,
-            Colour::Blue => &mut frame.robots_blue,
-        };
+        let team = one.colour.pick(&mut frame.robots_yellow, &mut frame.robots_blue);
         let [a, b] = [one, other].map(|who| Some(u32::from(who.id.number())));
         for robot in team {
             if robot.robot_id == a {

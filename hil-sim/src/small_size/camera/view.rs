@@ -14,7 +14,6 @@ use crate::rng::Stream;
 use crate::small_size::compatibility::Profile;
 use crate::small_size::robot::Robot;
 use crate::small_size::{Ball, World};
-use rules::Colour;
 
 /// Camera that looks straight down on its rectangle of the field.
 #[derive(Clone, Debug)]
@@ -103,7 +102,6 @@ impl View {
         self.first + (self.phase + self.taken * self.period) / 1000
     }
 
-    /// Takes a frame at `time`.
     pub(super) fn look(&mut self, world: &World, settings: &CameraSettings, time: f64) -> DetectionFrame {
         self.taken += 1;
         let mut frame = DetectionFrame {
@@ -127,10 +125,7 @@ impl View {
                 continue;
             }
             let detection = self.robot(robot, settings);
-            match robot.who.colour {
-                Colour::Yellow => frame.robots_yellow.push(detection),
-                Colour::Blue => frame.robots_blue.push(detection),
-            }
+            robot.who.colour.pick(&mut frame.robots_yellow, &mut frame.robots_blue).push(detection)
         }
         frame
     }
@@ -184,7 +179,6 @@ impl View {
         })
     }
 
-    /// A false ball detection.
     fn ghost(&mut self, settings: &CameraSettings) -> DetectionBall {
         let x = self.chance.between(self.low.x(), self.high.x());
         let y = self.chance.between(self.low.y(), self.high.y());

@@ -137,17 +137,11 @@ pub struct Accounts {
 impl Accounts {
     /// The account of team `colour`.
     pub fn of(&self, colour: Colour) -> &Account {
-        match colour {
-            Colour::Yellow => &self.yellow,
-            Colour::Blue => &self.blue,
-        }
+        colour.pick(&self.yellow, &self.blue)
     }
 
     pub(super) fn of_mut(&mut self, colour: Colour) -> &mut Account {
-        match colour {
-            Colour::Yellow => &mut self.yellow,
-            Colour::Blue => &mut self.blue,
-        }
+        colour.pick(&mut self.yellow, &mut self.blue)
     }
 
     pub(super) fn both_mut(&mut self) -> [&mut Account; 2] {

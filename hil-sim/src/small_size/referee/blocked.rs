@@ -32,7 +32,6 @@ pub struct Blocked {
     pub obstacle: ReadyObstacle,
 }
 
-/// State of a wait.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Waiting {
     /// Since when there is an obstacle.

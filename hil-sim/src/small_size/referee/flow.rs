@@ -15,7 +15,6 @@ use super::observation::RobotSeen;
 use super::ready::ReadyObstacle;
 use super::reason::Reason;
 
-/// Party that brings the ball to its position.
 enum Placer {
     /// The ball lies near enough.
     Nobody,

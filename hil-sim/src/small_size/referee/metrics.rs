@@ -100,10 +100,7 @@ impl Metrics {
 
     /// The statistics of one team.
     pub fn team(&self, team: Colour) -> &TeamMetrics {
-        match team {
-            Colour::Yellow => &self.yellow,
-            Colour::Blue => &self.blue,
-        }
+        team.pick(&self.yellow, &self.blue)
     }
 
     /// The paper's offence ratio of that team; `None` where the ball never was in its half.
@@ -134,10 +131,7 @@ impl Metrics {
     }
 
     fn team_mut(&mut self, team: Colour) -> &mut TeamMetrics {
-        match team {
-            Colour::Yellow => &mut self.yellow,
-            Colour::Blue => &mut self.blue,
-        }
+        team.pick(&mut self.yellow, &mut self.blue)
     }
 }
 

@@ -13,7 +13,6 @@ use super::observation::{BallSeen, CrashSeen, RobotSeen};
 /// Both colours, in the order of the wire.
 pub(super) const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];
 
-/// Checked observation of the world.
 pub(super) struct Scene<'a> {
     pub(super) now: Instant,
     pub(super) ball: BallSeen,
@@ -24,7 +23,6 @@ pub(super) struct Scene<'a> {
     pub(super) game: &'a GameView<'a>,
 }
 
-/// The game state at that moment.
 pub(super) struct GameView<'a> {
     pub(super) phase: Phase<Colour>,
     /// Break: no rule applies to the teams.
@@ -45,7 +43,6 @@ pub(super) struct GameView<'a> {
 }
 
 impl GameView<'_> {
-    /// The end at which that team's own goal stands.
     pub(super) fn own_end(&self, team: Colour) -> GoalEnd {
         own_end(self.blue_on_positive, team)
     }
@@ -61,7 +58,6 @@ impl GameView<'_> {
     }
 }
 
-/// The end at which a team's own goal stands.
 pub(super) fn own_end(blue_on_positive: bool, team: Colour) -> GoalEnd {
     if (team == Colour::Blue) == blue_on_positive { GoalEnd::Positive } else { GoalEnd::Negative }
 }

@@ -114,18 +114,12 @@ impl RefereeSettings {
 
     /// Settings of one team.
     pub fn team_mut(&mut self, colour: Colour) -> &mut TeamSettings {
-        match colour {
-            Colour::Yellow => &mut self.yellow,
-            Colour::Blue => &mut self.blue,
-        }
+        colour.pick(&mut self.yellow, &mut self.blue)
     }
 
     /// Settings of one team.
     pub fn team(&self, colour: Colour) -> &TeamSettings {
-        match colour {
-            Colour::Yellow => &self.yellow,
-            Colour::Blue => &self.blue,
-        }
+        colour.pick(&self.yellow, &self.blue)
     }
 }
 

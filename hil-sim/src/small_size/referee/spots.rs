@@ -45,7 +45,6 @@ impl InternalReferee {
         }
     }
 
-    /// The mark from which that team takes its penalty.
     pub(super) fn penalty_spot(&self, team: Colour) -> Point<Field> {
         self.field.penalty_spot(self.own_end(team).opposite())
     }

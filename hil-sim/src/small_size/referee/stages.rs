@@ -8,7 +8,6 @@ use rules::{Colour, Phase, limits};
 use super::settings::MatchClock;
 use super::{InternalReferee, Restart, micros, scene::is_running};
 
-/// State of a shoot-out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShootOut {
     next: Colour,

@@ -72,10 +72,7 @@ impl InternalReferee {
         }
         self.command_counter += 1;
         self.command_at = self.now;
-        let goal = match team {
-            Colour::Yellow => wire::Command::GoalYellow,
-            Colour::Blue => wire::Command::GoalBlue,
-        };
+        let goal = team.pick(wire::Command::GoalYellow, wire::Command::GoalBlue);
         let packet = wire::Referee { command: goal as i32, ..self.packet() };
         self.packets.push_back(packet);
     }
@@ -110,7 +107,6 @@ impl InternalReferee {
     }
 }
 
-/// The command's number on the wire.
 pub(super) const fn command(command: RefereeCommand) -> wire::Command {
     use Colour::{Blue, Yellow};
     match command {
@@ -131,7 +127,6 @@ pub(super) const fn command(command: RefereeCommand) -> wire::Command {
     }
 }
 
-/// The stage's number on the wire.
 pub(super) const fn stage(stage: Stage) -> wire::Stage {
     match stage {
         Stage::FirstHalfPre => wire::Stage::NormalFirstHalfPre,

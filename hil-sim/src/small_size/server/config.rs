@@ -211,7 +211,6 @@ fn set(place: &mut f32, value: Option<f32>) {
     }
 }
 
-/// Applies the specification to a robot.
 fn shape(robot: &mut Robot, specs: &RobotSpecs) {
     let BodyParameters { radius, height, mass, front, .. } = &mut robot.body;
     set(radius, specs.radius);

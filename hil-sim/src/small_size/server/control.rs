@@ -222,7 +222,6 @@ fn whole_robot(asked: &TeleportRobot, present: bool, known: bool) -> Result<(), 
     if by_force && moves { Err(Refusal::VelocityForce("teleport_robot")) } else { Ok(()) }
 }
 
-/// The robot of a protocol id.
 pub(super) fn who(id: &ssl::common::RobotId) -> Result<Who, Refusal> {
     let number = id.id.ok_or(Refusal::NoSuchId(None))?;
     let number = u8::try_from(number).ok().and_then(RobotId::new).ok_or(Refusal::NoSuchId(id.id))?;

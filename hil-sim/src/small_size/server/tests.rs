@@ -30,7 +30,6 @@ fn server() -> Server {
     server_like(Profile::Ours)
 }
 
-/// All transmitted packets: vision, and answers.
 fn sent(server: &mut Server) -> (Vec<WrapperPacket>, Vec<Vec<u8>>) {
     let (mut vision, mut answers) = (Vec::new(), Vec::new());
     while let Some(Transmit { to, bytes }) = server.poll_transmit() {

@@ -3,12 +3,10 @@
 use std::fmt;
 use std::str::FromStr;
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// The choice of a world: `nominal`, a named profile, or `random:SEED`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum WorldChoice {
     /// The league's own file, unchanged.
     #[default]
@@ -19,7 +17,7 @@ pub enum WorldChoice {
     Random(u64),
 }
 
-crate::labels! {
+geometry::labels! {
     /// A profile of `hil-sim/data/worlds`.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum NamedWorld {
@@ -74,8 +72,7 @@ impl FromStr for WorldChoice {
 }
 
 /// The world of each match of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum WorldPlan {
     /// All matches in this one.
     Same(WorldChoice),
@@ -125,31 +122,25 @@ impl FromStr for WorldPlan {
     }
 }
 
-impl TryFrom<String> for WorldChoice {
-    type Error = UnknownWorld;
-    fn try_from(name: String) -> Result<Self, UnknownWorld> {
-        name.parse()
-    }
-}
+/// Implements serde's traits of types by `Display` and `FromStr`.
+#[macro_export]
+macro_rules! serde_by_text {
+    ($($name:ty),+) => { $(
+        impl serde::Serialize for $name {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.collect_str(self)
+            }
+        }
 
-impl From<WorldChoice> for String {
-    fn from(choice: WorldChoice) -> Self {
-        choice.to_string()
-    }
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let text = <String as serde::Deserialize>::deserialize(deserializer)?;
+                text.parse().map_err(serde::de::Error::custom)
+            }
+        }
+    )+ };
 }
-
-impl TryFrom<String> for WorldPlan {
-    type Error = UnknownWorld;
-    fn try_from(name: String) -> Result<Self, UnknownWorld> {
-        name.parse()
-    }
-}
-
-impl From<WorldPlan> for String {
-    fn from(plan: WorldPlan) -> Self {
-        plan.to_string()
-    }
-}
+serde_by_text!(WorldChoice, WorldPlan);
 
 /// The text names no world.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -9,7 +9,6 @@ use super::LinkModel;
 use crate::rng::Stream;
 use crate::small_size::{Order, SLOTS};
 
-/// The delayed orders of a world.
 #[derive(Clone, Debug)]
 pub(in crate::small_size) struct Latency {
     steps: u64,

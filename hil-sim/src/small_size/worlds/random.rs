@@ -9,7 +9,7 @@ use super::WorldModel;
 use crate::rng::Stream;
 use crate::small_size::Parameters;
 
-crate::labels! {
+geometry::labels! {
     /// Distribution of a quantity between its bounds.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Law {
@@ -142,7 +142,6 @@ pub const GAP_MS: [u32; 2] = [40, 150];
 const SWAP_FRAMES: [u32; 2] = [1, 5];
 
 impl WorldModel {
-    /// The world of this seed in a league.
     pub(super) fn random(league: &Parameters, seed: u64) -> Self {
         let mut model = Self::nominal(league.clone());
         for quantity in DRAWS {

@@ -52,7 +52,6 @@ pub enum BallContact {
 }
 
 impl BallLook<'_> {
-    /// Whether the ball has left the field.
     pub(super) fn is_out(&self) -> bool {
         self.field.clamp(self.ball, -BALL_RADIUS).distance(self.ball) > 0.0
     }

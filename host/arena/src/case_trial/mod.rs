@@ -26,7 +26,7 @@ use crate::game::GameError;
 use crate::names::CaseNames;
 use crate::recording::RecordedSample;
 
-hil_sim::labels! {
+geometry::labels! {
     /// Behaviour of the opponents of a case.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Opposition {

@@ -17,7 +17,6 @@ use rules::FieldSpec;
 /// Field and bodies of a league.
 #[derive(Clone, Debug)]
 pub(super) struct Bodies {
-    /// The field.
     pub(super) field: FieldSpec,
     /// Least distance of a robot's centre from the ball at the start, m.
     pub(super) clear_of_ball: f32,
@@ -25,10 +24,8 @@ pub(super) struct Bodies {
     pub(super) apart: f32,
 }
 
-/// Start places.
 #[derive(Clone, Debug)]
 pub(super) struct Places {
-    /// The ball.
     pub(super) ball: Point<Field>,
     /// The robots of the case, in its order.
     pub(super) attackers: Vec<Pose<Field>>,

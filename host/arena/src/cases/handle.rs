@@ -153,7 +153,6 @@ impl LibraryHandle {
     }
 }
 
-/// The files of a built-in league.
 fn built_in_files(league: &League) -> Files {
     let cases = league.names.iter().zip(league.sources).map(|(name, text)| (*name, *text));
     Files::from_texts(league.name, league.rules, &cases.collect::<Vec<_>>())
@@ -216,7 +215,6 @@ pub enum LibraryError {
     },
 }
 
-/// A line for each error among these findings.
 fn errors(findings: &[Finding]) -> String {
     let errors = findings.iter().filter(|finding| finding.severity == Severity::Error);
     errors.fold(String::new(), |text, finding| text + "  " + &finding.to_string() + "\n")

@@ -123,7 +123,6 @@ impl GameConfig {
 }
 
 impl TeamSetup {
-    /// The brain of its robot `id`.
     pub(super) fn brain(&self, league: League, id: protocol::RobotId) -> BrainConfig {
         BrainConfig {
             approach: self.approach,

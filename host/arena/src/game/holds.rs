@@ -36,7 +36,6 @@ pub(super) struct Holds {
     over: [u32; 2],
 }
 
-/// A running spell.
 #[derive(Clone, Copy, Debug)]
 struct Spell {
     who: Who,
@@ -77,7 +76,6 @@ impl Turning {
 }
 
 impl Holds {
-    /// Takes a tick of the match.
     pub(super) fn look(&mut self, game: &Game<'_>) {
         let now = game.time();
         if game.referee().phase() != Phase::Run {
@@ -145,7 +143,6 @@ impl Holds {
     }
 }
 
-/// Whether the ball is at the robot's front.
 fn holds(robot: &Robot, ball: &Ball) -> bool {
     let at = robot.pose.to_body(ball.position);
     let half = (robot.body.radius.powi(2) - robot.body.front.powi(2)).max(0.0).sqrt();
@@ -162,7 +159,6 @@ const GAP: f64 = 0.25;
 const LONG_HOLD_S: f32 = 2.5;
 /// A turn by less than this is not counted, rad: 5°.
 const SWING: f32 = 0.087;
-/// Radius of the ball, m (rules).
 const BALL_RADIUS: f32 = rules::limits::BALL_RADIUS;
 const BODY_HEIGHT: f32 = rules::limits::ROBOT_HEIGHT;
 

@@ -16,7 +16,6 @@ use rules::restart::kickoff_places;
 
 use super::{GameConfig, GameError, TICK_US, TeamSetup, Watcher, numbers};
 
-/// A running team.
 pub(super) struct Team<'a> {
     pub(super) host: Host,
     strategy: Option<Box<dyn StrategyLink>>,
@@ -25,7 +24,6 @@ pub(super) struct Team<'a> {
     players: Vec<Player<'a>>,
 }
 
-/// A robot with a brain.
 struct Player<'a> {
     who: Who,
     /// `None` while it is off.
@@ -200,7 +198,6 @@ impl<'a> Team<'a> {
     }
 }
 
-/// Starts the program of a strategy.
 fn started(starter: &StrategyStarter) -> Result<Box<dyn StrategyLink>, GameError> {
     starter.start().map_err(|error| GameError::Strategy { name: starter.name().to_owned(), error })
 }

@@ -175,7 +175,6 @@ impl TeamLedger {
         true
     }
 
-    /// Takes an event of the ball.
     fn follow(&mut self, us: Colour, now: f64, event: &BallEvent) {
         for (id, decided) in &mut self.decided {
             if decided.window == Window::Over {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::cycles::CycleEnd;
 
-hil_sim::labels! {
+geometry::labels! {
     /// Event that followed a play; the greater counts where several did.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
     pub enum Followed {
@@ -48,7 +48,6 @@ pub struct CaseTally {
 }
 
 impl CaseTally {
-    /// Adds a play.
     pub(super) fn count(&mut self, end: &str, (passes, arrived): (u32, u32), followed: Followed) {
         self.retrieved += 1;
         self.finished += u32::from(end == CycleEnd::FINISHED);
@@ -58,7 +57,6 @@ impl CaseTally {
         add(&mut self.followed_by, followed.label(), 1);
     }
 
-    /// Adds other plays.
     fn add(&mut self, other: &Self) {
         self.retrieved += other.retrieved;
         self.finished += other.finished;
@@ -114,7 +112,6 @@ pub struct CaseTable {
 }
 
 impl CaseTable {
-    /// Adds plays of a case.
     pub(super) fn add(&mut self, case: &str, opponents: usize, tally: &CaseTally) {
         let place = self.cases.iter().position(|line| line.case == case).unwrap_or_else(|| {
             self.cases.push(CaseLine { case: case.to_owned(), ..CaseLine::default() });
@@ -127,7 +124,6 @@ impl CaseTable {
         self.cases.sort_by(|a, b| b.all.retrieved.cmp(&a.all.retrieved).then_with(|| a.case.cmp(&b.case)));
     }
 
-    /// Adds a decision to play no case.
     pub(super) fn add_no_case(&mut self, opponents: usize, because: &str) {
         self.no_case += 1;
         add(&mut self.no_case_because, because, 1);

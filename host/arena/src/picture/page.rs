@@ -59,7 +59,6 @@ impl Page {
         Self { svg, origin }
     }
 
-    /// Place of a point of the field on the sheet.
     pub(super) fn place(&self, point: Point<Field>) -> Px {
         self.origin.moved(point.x() * SCALE, -point.y() * SCALE)
     }
@@ -96,7 +95,6 @@ impl Page {
         self.svg.text(at.at(), text, anchor, font);
     }
 
-    /// The whole sheet.
     pub(super) fn finish(self, width: f32, height: f32, title: &str) -> String {
         let (right, bottom) = (f64::from(width), -f64::from(height));
         self.svg.finish([0.0, bottom], [right, 0.0], 1.0, Theme::Light.colors().paper, title)

@@ -49,7 +49,6 @@ pub(super) struct Follower {
     pub(super) found: Vec<Found>,
 }
 
-/// Places of ball and robots.
 #[derive(Clone, Debug)]
 struct Scene {
     at: f64,
@@ -243,7 +242,6 @@ fn size(field: &FieldSpec) -> [i32; 2] {
 
 /// Scenes are kept for this time, s: three passes and what was carried between them.
 const KEPT_S: f64 = 20.0;
-/// Kicks that are kept.
 const KICKS_KEPT: usize = 16;
 /// A goal within this time of a kick is that kick's, s: the referee takes some seconds to give it.
 const GOAL_WITHIN_S: f64 = 10.0;

@@ -39,12 +39,9 @@ impl Sides<'_> {
     }
 }
 
-/// A situation.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Situation {
-    /// Place of the ball.
     pub(super) ball: Point<Field>,
-    /// Poses of all robots.
     pub(super) robots: Vec<(Who, Pose<Field>)>,
 }
 

@@ -7,7 +7,6 @@ use arena::game::TICK_US;
 use geometry::{Field, Point};
 use page::{Layer, MatchEvent, Shape, Tone, milli};
 use protocol::Instant;
-use rules::Colour;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
 use super::compare::{PlaySettings, Playing, compare};
@@ -73,10 +72,7 @@ impl<'a> Beside<'a> {
                 }
             };
         for robot in other.robots() {
-            let tone = match robot.who.colour {
-                Colour::Blue => Tone::Blue,
-                Colour::Yellow => Tone::Yellow,
-            };
+            let tone = robot.who.colour.pick(Tone::Yellow, Tone::Blue);
             let with = world.robot(robot.who).map(|robot| robot.pose.position);
             let note = format!("{} {} of trace B", robot.who.colour.label(), robot.who.id.number());
             add(robot.pose.position, with, ROBOT_RADIUS, tone, note);

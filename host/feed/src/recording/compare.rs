@@ -31,12 +31,10 @@ pub struct PlaySettings<'a> {
     pub observer: &'a dyn ReadObserver,
 }
 
-/// A trace that is played.
 pub(super) struct Playing<'a> {
     trace: TraceFile<'a>,
     pub(super) recheck: Recheck,
     decisions: Decisions,
-    /// The first record that was not played yet.
     next: Option<Record>,
     span: Option<(Instant, Instant)>,
 }
@@ -55,7 +53,6 @@ impl<'a> Playing<'a> {
         self.trace.file()
     }
 
-    /// The tick of the next record.
     fn tick(&self) -> Option<u64> {
         self.next.as_ref().map(|record| record.at.0 / TICK_US)
     }

@@ -20,7 +20,6 @@ const SETTINGS_LISTED: usize = 20;
 /// Longest value of a setting that is printed, characters.
 const SETTING_LEN: usize = 80;
 
-/// A setting of the headers that differs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Setting {
     name: String,
@@ -37,7 +36,6 @@ pub(super) struct Ended {
     pub(super) damage: Option<String>,
 }
 
-/// Numbers of records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 struct Records {
     same: u64,
@@ -274,7 +272,6 @@ impl Report {
         self.files.get(which).and_then(|file| file.damage.clone()).unwrap_or_default()
     }
 
-    /// The earliest difference.
     pub(super) fn first(&self) -> Option<&Unlike> {
         self.first.as_ref()
     }

@@ -14,7 +14,6 @@ use crate::spaced;
 /// A moment, as text and as JSON.
 #[derive(Debug, Serialize)]
 pub struct Moment {
-    /// Seconds since the start of the file.
     at_s: f64,
     /// The event that it was requested by, if any.
     #[serde(skip_serializing_if = "Option::is_none")]

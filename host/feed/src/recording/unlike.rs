@@ -20,7 +20,6 @@ const BYTES_SHOWN: usize = 8;
 /// Longest part of a value from a file that is printed, characters.
 const VALUE_LEN: usize = 200;
 
-/// Kind of thing that differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum What {
@@ -71,7 +70,6 @@ impl Unlike {
     }
 }
 
-/// The name of a host, by its number in the records.
 pub(super) fn host_name(number: u8, colours: &[Colour]) -> String {
     colours.get(usize::from(number)).map_or_else(
         || format!("host {number}, which the header does not name"),
@@ -107,7 +105,6 @@ pub(super) fn records(a: &Record, b: &Record, colours: &[Colour]) -> (String, St
     }
 }
 
-/// A record as one line.
 pub(super) fn whole(record: &Record, colours: &[Colour]) -> String {
     let (kind, host) = (record_label(record.kind), host_name(record.host, colours));
     format!("{kind} of {host} at {:.6} s, {} bytes", record.at.0 as f64 * 1e-6, record.bytes.len())

@@ -15,25 +15,54 @@ pub(super) enum Asked {
     /// The library's cases, and what can be done here.
     List {},
     /// A case of the library.
-    Open { name: String },
-    /// A draft for a problem.
-    Draft { problem: Value },
+    Open {
+        name: String,
+    },
+    Draft {
+        problem: Value,
+    },
     /// The sheet of a text.
-    Look { name: String, text: String },
+    Look {
+        name: String,
+        text: String,
+    },
     /// A change of a text, made in a symmetric copy.
-    Edit { name: String, text: String, symmetry: SymmetryName, edit: Edit },
+    Edit {
+        name: String,
+        text: String,
+        symmetry: SymmetryName,
+        edit: Edit,
+    },
     /// Everything that `cases check` finds.
-    Check { name: String, text: String },
+    Check {
+        name: String,
+        text: String,
+    },
     /// Rank and margins over a problem.
-    Rank { name: String, text: String, problem: Value },
+    Rank {
+        name: String,
+        text: String,
+        problem: Value,
+    },
     /// Problems of the match that it wins.
-    Count { name: String, text: String },
+    Count {
+        name: String,
+        text: String,
+    },
     /// Evidence and proposals of learning.
-    Learned { name: String },
+    Learned {
+        name: String,
+    },
     /// The change of it with these words is refused, or is proposed again.
-    Refuse { name: String, words: String, refused: bool },
+    Refuse {
+        name: String,
+        words: String,
+        refused: bool,
+    },
     /// Changes by other settings of retrieval over the match's problems.
-    Settings { values: BTreeMap<String, String> },
+    Settings {
+        values: BTreeMap<String, String>,
+    },
     /// Attempts in the simulator.
     Rehearse {
         name: String,
@@ -49,7 +78,9 @@ pub(super) enum Asked {
     /// No further ones.
     Stop {},
     /// One of them, to be watched.
-    Sample { number: u32 },
+    Sample {
+        number: u32,
+    },
     /// Tries of a single skill in the simulator; without one: what can be tried, and how the last tries went.
     Tries {
         #[serde(default)]
@@ -58,7 +89,11 @@ pub(super) enum Asked {
     /// No further tries.
     StopTries {},
     /// Writes the file; `over`: the text that it replaces.
-    Save { name: String, text: String, over: Option<String> },
+    Save {
+        name: String,
+        text: String,
+        over: Option<String>,
+    },
 }
 
 impl Asked {
@@ -105,7 +140,6 @@ fn opposition<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Opposition, 
         .ok_or_else(|| serde::de::Error::custom("opponents are standing or playing"))
 }
 
-/// A symmetry by its name.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum SymmetryName {

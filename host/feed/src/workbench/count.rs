@@ -27,7 +27,6 @@ impl Problems {
     }
 }
 
-/// Problems of a match that a case wins.
 #[derive(Debug, PartialEq, Eq, Serialize)]
 pub(super) struct CaseCount {
     /// Problems that were counted.

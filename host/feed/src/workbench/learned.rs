@@ -67,7 +67,6 @@ pub(super) fn refuse(library: Option<&Path>, case: &str, words: &str, refuses: b
     fs::rename(&part, &file).map_err(failed)
 }
 
-/// Name of the report.
 const REPORT_FILE: &str = "report.json";
 
 fn found(directory: &Path, name: &str) -> Option<PathBuf> {

@@ -37,7 +37,6 @@ pub use shared_library::SharedLibrary;
 /// Problems that are drawn to find out whether a case is ever retrieved, as by `cases check`.
 const DRAWN_PROBLEMS: u64 = 20_000;
 
-/// The workbench of a page.
 pub(crate) struct CaseWorkbench {
     library: SharedLibrary,
     settings: RetrievalSettings,
@@ -59,7 +58,6 @@ impl CaseWorkbench {
         }
     }
 
-    /// Answers a request.
     pub(crate) fn answer(&self, request: &WorkbenchRequest) -> Result<String, String> {
         let asked: Asked =
             serde_json::from_str(&request.text).map_err(|error| format!("no request: {error}"))?;

@@ -97,12 +97,10 @@ impl Rehearsal {
         self.course.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// No further attempts.
     pub(super) fn stop(&self) {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Results so far.
     pub(super) fn report(&self) -> Value {
         let course = self.course();
         let attempts: Vec<_> = course.attempts.iter().map(|(attempt, _)| attempt.clone()).collect();

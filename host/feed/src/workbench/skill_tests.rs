@@ -41,7 +41,6 @@ impl SkillTests {
         json!({ "skills": Skill::ALL.map(Skill::label), "worlds": WorldChoice::names().collect::<Vec<_>>() })
     }
 
-    /// Begins the tries.
     pub(super) fn begin(plan: SkillPlan) -> Result<Arc<Self>, String> {
         let (stopped, course) = (AtomicBool::new(false), Mutex::default());
         let tests = Arc::new(Self { plan, stopped, course });
@@ -70,12 +69,10 @@ impl SkillTests {
         self.course.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// No further tries.
     pub(super) fn stop(&self) {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Results so far.
     pub(super) fn report(&self) -> Value {
         let course = self.course();
         let failed = course.results.iter().filter_map(|result| {

@@ -26,7 +26,6 @@ pub(super) struct BarChart {
 }
 
 impl BarChart {
-    /// Outcomes of Table 1, 4 or 6.
     pub(super) fn outcomes(table: u8) -> Self {
         let against = if table == 4 { "two defenders" } else { "a defender and a goalie" };
         let robots = if table == 6 { ", robots" } else { "" };
@@ -64,7 +63,6 @@ impl BarChart {
         }
     }
 
-    /// The chart of this report's rows.
     pub(super) fn figure(mut self, report: &Report<'_>) -> Figure {
         let scenarios = scenarios(report, self.table);
         let all: Vec<Entry<'_>> = scenarios.iter().flat_map(|s| entries(report, self.table, *s)).collect();

@@ -18,7 +18,6 @@ use bars::BarChart;
 /// A plot, and the number of the table whose numbers it shows; 0 for all.
 pub(crate) type TablePlot = (u8, Figure);
 
-/// All plots, in the order of the tables.
 pub(crate) fn plots(report: &Report<'_>) -> Vec<TablePlot> {
     let mut plots = vec![
         (0, effects::figure(report)),

@@ -22,7 +22,6 @@ pub(super) struct Stoppage {
     pub(super) parts: BTreeMap<&'static str, f64>,
 }
 
-/// All stoppages of a match.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stoppages {
     in_play_s: f32,
@@ -50,7 +49,6 @@ struct Touch {
 }
 
 impl Stoppages {
-    /// Takes a tick of the match.
     pub(super) fn look(&mut self, game: &Game<'_>) {
         for event in game.events() {
             let (who, kick) = match *event {
@@ -97,7 +95,6 @@ impl Stoppages {
         *open.parts.entry(name(game.referee().phase())).or_default() += f64::from(passed_s);
     }
 
-    /// Closes the running stoppage.
     pub(super) fn end(&mut self) {
         self.all.extend(self.open.take());
     }

@@ -30,7 +30,6 @@ pub struct Arm {
     change: Change,
 }
 
-/// Kind of change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Change {
     Nothing,

@@ -13,7 +13,7 @@ use super::tables::{Extent, TableRow, rounded};
 use crate::statistics::{Count, Sample, Test, holm, two_proportions, welch};
 use arena::approach_label;
 
-hil_sim::labels! {
+geometry::labels! {
     /// A measure that two rows are compared in.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum Measure {
@@ -158,7 +158,6 @@ impl Measure {
         Some(Sample { n: row.trials, mean: self.value(row)?, sd })
     }
 
-    /// Tests whether they differ.
     pub(super) fn test(self, first: &TableRow, second: &TableRow) -> Option<Test> {
         match (self.count(first), self.count(second)) {
             (Some(a), Some(b)) => two_proportions(a, b),

@@ -113,7 +113,6 @@ pub(super) mod tests {
     use super::*;
     use crate::store::in_words;
 
-    /// The identity of an evaluation, for tests.
     pub(crate) fn identity() -> Identity {
         Identity {
             program: "test".to_owned(),

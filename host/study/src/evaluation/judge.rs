@@ -29,7 +29,7 @@ pub struct JudgementLine {
     pub evidence: String,
 }
 
-hil_sim::labels! {
+geometry::labels! {
     /// Does a line hold?
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]

@@ -87,7 +87,6 @@ pub struct TrialRow {
 }
 
 impl TrialRow {
-    /// The row of a played trial.
     pub(super) fn new(planned: &Planned, report: &TrialReport) -> Self {
         let backups = |robot: usize| report.backups.0.get(robot).copied().unwrap_or_default();
         let default = report.default;
@@ -128,7 +127,6 @@ impl TrialRow {
         }
     }
 
-    /// Whether it is a row of this trial.
     pub(super) fn is_of(&self, planned: &Planned) -> bool {
         let cell = &planned.cell;
         let own = (self.profile, self.configuration, self.scenario, self.approach);

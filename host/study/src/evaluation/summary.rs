@@ -14,7 +14,6 @@ use super::tables::{Extent, TableRow};
 use crate::statistics::stars;
 use arena::approach_label;
 
-/// A column of a table.
 struct Column {
     title: &'static str,
     value: fn(&TableRow) -> Option<f64>,
@@ -111,7 +110,6 @@ pub fn summary(results: &Results) -> String {
     text
 }
 
-/// A table with its title.
 fn table_text(results: &Results, number: u8, sample: Extent, rows: &[&TableRow]) -> String {
     let (title, columns) = layout(number);
     let least = rows.iter().map(|row| row.trials).min().unwrap_or_default();

@@ -18,12 +18,13 @@ use super::row::TrialRow;
 use crate::statistics::{Interval, Sample, wilson};
 use arena::Profile;
 
-hil_sim::labels! {
+geometry::labels! {
     /// Sample that a row is of.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Extent {
         /// The paper's: all of them, but of Table 6 the first 30.
+        #[default]
         Paper = "paper",
         /// Table 6 alone: all of them, to show what 30 could not.
         Large = "large",
@@ -31,7 +32,7 @@ hil_sim::labels! {
 }
 
 /// A row of one of the paper's tables. Fields may be added at the end, never renamed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TableRow {
     /// The paper's table, `1` to `6`.
     #[serde(serialize_with = "table")]
@@ -150,7 +151,6 @@ pub struct TableRow {
     pub pause_time: Option<f64>,
 }
 
-/// A mean with its spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Mean {
     mean: Option<f64>,
@@ -183,12 +183,10 @@ pub fn tables(rows: &[TrialRow]) -> Vec<TableRow> {
     tables
 }
 
-/// Confidence level of the intervals of shares.
 const CONFIDENCE: f64 = 0.95;
 /// Trials of the paper's robots a row of Table 6 (§5.3).
 pub(super) const TRIALS_OF_ROBOTS: usize = 30;
 
-/// Key of a table's row.
 type Key = (Scenario, Approach);
 
 fn belongs(table: u8, row: &TrialRow) -> bool {
@@ -211,71 +209,13 @@ fn plays_cases(approach: Approach) -> bool {
     approach != Approach::Reactive
 }
 
-/// Opponents of a table's attackers.
 fn opponents(table: u8) -> Configuration {
     if matches!(table, 4 | 5) { Configuration::TwoDefenders } else { Configuration::DefenderGoalie }
 }
 
 impl TableRow {
-    /// A row without measurements.
     pub(super) fn empty(table: u8, scenario: Scenario, approach: Approach) -> Self {
-        Self {
-            table,
-            configuration: opponents(table),
-            scenario,
-            approach,
-            trials: 0,
-            goal: None,
-            close: None,
-            block: None,
-            out: None,
-            timeout: None,
-            to_goal: None,
-            possession_mean: None,
-            possession_sd: None,
-            possession2_mean: None,
-            possession2_sd: None,
-            time_mean: None,
-            time_sd: None,
-            backups_a: None,
-            backups_b: None,
-            individual: None,
-            cooperative: None,
-            none: None,
-            out_by_attackers: None,
-            out_by_opponents: None,
-            default_time: None,
-            default_spells: None,
-            none_ball: None,
-            none_robots: None,
-            none_thr_c: None,
-            none_path: None,
-            none_held: None,
-            time_to_goal_mean: None,
-            cases_to_goal_mean: None,
-            backups_a_sd: None,
-            backups_b_sd: None,
-            sample: Extent::Paper,
-            goal_low: None,
-            goal_high: None,
-            close_low: None,
-            close_high: None,
-            block_low: None,
-            block_high: None,
-            out_low: None,
-            out_high: None,
-            timeout_low: None,
-            timeout_high: None,
-            to_goal_low: None,
-            to_goal_high: None,
-            duel_time: None,
-            held_time: None,
-            theirs_time: None,
-            rolls_time: None,
-            at_ball_time: None,
-            walk_time: None,
-            pause_time: None,
-        }
+        Self { table, configuration: opponents(table), scenario, approach, ..Self::default() }
     }
 
     fn filled(mut self, rows: &[&TrialRow]) -> Self {

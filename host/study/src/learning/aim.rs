@@ -16,9 +16,7 @@ use crate::learning::variant::{Answer, Variant};
 /// Purpose of drawn situations; no two purposes draw the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// The search for new cases.
     Search,
-    /// Screening of a round's proposals.
     Screening,
 }
 

@@ -24,7 +24,6 @@ pub struct Wager {
     pub lowered: u32,
     /// All pairs, equal ones included.
     pub pairs: u32,
-    /// Differences of the pairs.
     #[serde(flatten)]
     differences: PairedDifference,
 }
@@ -34,12 +33,10 @@ pub struct Wager {
 pub struct PairedDifference {
     /// Sum over the pairs.
     pub sum: f64,
-    /// Sum of squares.
     squares: f64,
 }
 
 impl PairedDifference {
-    /// Adds a pair by its difference.
     pub(crate) fn add(&mut self, difference: f64) {
         self.sum += difference;
         self.squares += difference * difference;

@@ -16,7 +16,6 @@ pub struct Collected {
     pub plays: BTreeSet<SuccessfulPlay>,
 }
 
-/// A line with a play.
 #[derive(Serialize, Deserialize)]
 struct PlayLine {
     play: SuccessfulPlay,

@@ -20,7 +20,6 @@ pub fn diff(before: &Files, after: &Files) -> String {
     diff
 }
 
-/// The text of a case's file.
 pub(crate) fn text_of<'f>(files: &'f Files, case: &str) -> Option<&'f str> {
     files.cases.iter().find(|file| file.name == case).map(|file| file.text.as_str())
 }

@@ -156,7 +156,6 @@ pub(crate) fn region([length, width]: [i32; 2], [x, y]: [i32; 2]) -> &'static st
     }
 }
 
-/// An opponent of a draft.
 fn opponent(at: [i32; 2], scope: [i32; 2], presence: Presence) -> String {
     let demand = match presence {
         Presence::Preferred => String::new(),
@@ -165,7 +164,6 @@ fn opponent(at: [i32; 2], scope: [i32; 2], presence: Presence) -> String {
     format!("\n[[opponents]]\nat = {at:?}\nscope = {scope:?}\n{demand}")
 }
 
-/// The line of an opponent's demand.
 fn demand(presence: Presence) -> String {
     format!("presence = \"{}\"\n", presence.label())
 }

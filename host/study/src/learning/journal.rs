@@ -263,5 +263,4 @@ fn differences(own: &str, other: &str) -> String {
     differing.join("; ")
 }
 
-/// Files of journals.
 const JOURNALS: FileKind = ("journal-", ".jsonl");

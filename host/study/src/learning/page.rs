@@ -163,7 +163,6 @@ fn lead(learned: &Learned) -> Markup {
     }
 }
 
-/// The points of the learning curve.
 fn curve_table(curve: &[CurvePoint]) -> Table {
     let as_robots = curve.iter().any(|point| point.to_goal_robots.is_some());
     let mut columns = vec![
@@ -216,7 +215,6 @@ fn proposals(learned: &Learned) -> Table {
     Table::new(columns).with_rows(rows)
 }
 
-/// The style of a line of a unified diff.
 fn line_class(line: &str) -> &'static str {
     match line.as_bytes() {
         [b'-', b'-', b'-', ..] | [b'+', b'+', b'+', ..] => "file",

@@ -28,7 +28,6 @@ pub struct Pairs {
     pub worlds: [WorldPairs; 2],
 }
 
-/// Objection of pairs to a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Objection {
     /// Fewer balls come to goal in a world or a kind of starts.

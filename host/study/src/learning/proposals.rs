@@ -17,7 +17,7 @@ use crate::learning::edit::{Change, Edit, RETRIEVAL};
 use crate::learning::goalkeeper;
 use crate::learning::variant::Variant;
 
-hil_sim::labels! {
+geometry::labels! {
     /// Kinds of changes.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "kebab-case")]

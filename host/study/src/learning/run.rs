@@ -23,7 +23,6 @@ use crate::learning::settings::LearnSettings;
 use crate::learning::starts::StartStream;
 use crate::learning::variant::{Variant, VariantError};
 
-/// Result of a step of learning.
 pub(super) type LearnResult<T> = Result<T, LearnError>;
 
 /// Error that ended learning without a result.
@@ -66,9 +65,7 @@ pub(super) trait World: Sized {
     type Ground;
     /// Plays with a change that a look at a test leaves for the library with it.
     type Changed;
-    /// Numbers of screening.
     const SCREENING: Screening;
-    /// Numbers of the test.
     const TESTING: Testing;
     /// Successive rounds without a proposal after which a run ends.
     const IDLE_ROUNDS: u32;
@@ -159,7 +156,6 @@ pub(super) struct Run<'s, W> {
     pub(super) curve: Vec<CurvePoint>,
 }
 
-/// A proposal that is tried.
 pub(super) struct Candidate {
     pub(super) proposal: Proposal,
     pub(super) variant: Variant,
@@ -168,7 +164,6 @@ pub(super) struct Candidate {
     pub(super) groups: Vec<Wager>,
     /// Numbers of the drawn situations or matches that it may change.
     pub(super) touched: Vec<usize>,
-    /// Their share.
     pub(super) share: f64,
 }
 

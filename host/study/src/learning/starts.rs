@@ -83,7 +83,7 @@ pub fn kind_of(index: u32) -> (usize, u32) {
     (kind, cycle * times(&CYCLE) + times(&CYCLE[..slot]))
 }
 
-hil_sim::labels! {
+geometry::labels! {
     /// The worlds that a run learns in.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "kebab-case")]

@@ -33,7 +33,6 @@ pub enum VariantError {
     Refused(Vec<Finding>),
 }
 
-/// A line for each finding.
 fn lines(findings: &[Finding]) -> String {
     findings.iter().fold(String::new(), |text, finding| text + "\n  " + &finding.to_string())
 }

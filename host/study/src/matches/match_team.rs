@@ -3,15 +3,14 @@
 
 use std::collections::BTreeSet;
 use std::fmt;
+use std::str::FromStr;
 
 use brain::Approach;
 use host::strategy::{ROUND_1, Tactics, Team};
-use serde::{Deserialize, Serialize};
 
 /// A team with its tactics, written as one label: `zone`, `ours`, `ours-without-second-level`,
 /// `ours-without-cases`, `ours-with-coerce+pass-ahead`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(into = "String", try_from = "String")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MatchTeam {
     /// Strategy of its open play.
     pub team: Team,
@@ -128,7 +127,6 @@ impl MatchTeam {
         tactics.chain(self.cases.then_some(CASES)).map(str::to_owned).collect()
     }
 
-    /// Every part that there is.
     fn all_parts() -> BTreeSet<String> {
         Self { tactics: Tactics::ALL, ..Self::ours() }.parts()
     }
@@ -170,19 +168,15 @@ impl fmt::Display for MatchTeam {
     }
 }
 
-impl From<MatchTeam> for String {
-    fn from(match_team: MatchTeam) -> Self {
-        match_team.to_string()
+impl FromStr for MatchTeam {
+    type Err = String;
+
+    fn from_str(label: &str) -> Result<Self, String> {
+        Self::parse(label)
     }
 }
 
-impl TryFrom<String> for MatchTeam {
-    type Error = String;
-
-    fn try_from(label: String) -> Result<Self, String> {
-        Self::parse(&label)
-    }
-}
+hil_sim::serde_by_text!(MatchTeam);
 
 fn joined(parts: &BTreeSet<String>, between: &str) -> String {
     parts.iter().map(String::as_str).collect::<Vec<_>>().join(between)

@@ -178,7 +178,6 @@ impl Passes {
     }
 }
 
-/// Adds another match's counts.
 pub(super) fn add(sum: &mut PlayCounters, more: &PlayCounters) {
     sum.passes.add(&more.passes);
     sum.cap.attempts += more.cap.attempts;

@@ -143,7 +143,6 @@ columns! {
 }
 
 impl MatchRow {
-    /// The row of a played match.
     pub(super) fn new(planned: &Planned, report: &GameReport) -> Self {
         let [blue, yellow] = [
             MatchSide::new(&report.metrics.blue, report.score.blue, &report.fouls.blue),

@@ -2,101 +2,68 @@
 //! right.
 
 use std::fs;
-use std::ops::ControlFlow;
-use std::path::PathBuf;
 
 use hil_sim::small_size::worlds::{WorldChoice, WorldPlan};
 use host::strategy::Team;
 use host::strategy::counters::CapCounters;
 
 use super::*;
-use crate::store::{RunProgress, Shard, csv_hash, in_words, merge, read, to_csv};
+use crate::store::{Shard, csv_hash, in_words, merge, read, to_csv};
+use crate::testing::{Directory, GO_ON, on_threads};
 
-const GO_ON: &(dyn Fn(RunProgress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
-
-/// A directory of a test's own, removed at the end of the test.
-struct Directory(PathBuf);
-
-impl Directory {
-    fn new(name: &str) -> Self {
-        let directory = std::env::temp_dir().join(format!("onetwo-matches-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&directory);
-        fs::create_dir_all(&directory).unwrap();
-        Self(directory)
-    }
-
-    fn play(&self, shard: Shard, threads: usize) -> Vec<MatchRow> {
-        let base = case_library::division_b();
-        let matches = Matches {
-            plan: MatchPlan {
-                seed: 4,
-                league: "division-b".to_owned(),
-                world: WorldPlan::default(),
-                duration_s: 4.0,
-                pairings: MatchPlan::against(
-                    MatchTeam::ours(),
-                    &[Team::Reactive.into(), MatchTeam::parse("ours-without-second-level").unwrap()],
-                ),
-                matches: 2,
-                strategy: None,
-            },
-            base,
-            settings: RetrievalSettings::default(),
-            program: "test".to_owned(),
-            names: CaseNames::default(),
-        };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| matches.play_shard(shard, &self.0.join(shard.file_name()), GO_ON)).unwrap()
+/// Matches of our team against these opponents in division B.
+fn plan(seed: u64, duration_s: f64, matches: u32, opponents: &[MatchTeam]) -> MatchPlan {
+    MatchPlan {
+        seed,
+        league: "division-b".to_owned(),
+        world: WorldPlan::default(),
+        duration_s,
+        pairings: MatchPlan::against(MatchTeam::ours(), opponents),
+        matches,
+        strategy: None,
     }
 }
 
-impl Drop for Directory {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
+fn matches(plan: MatchPlan) -> Matches {
+    Matches {
+        plan,
+        base: case_library::division_b(),
+        settings: RetrievalSettings::default(),
+        program: "test".to_owned(),
+        names: CaseNames::default(),
     }
+}
+
+fn play(directory: &Directory, shard: Shard, threads: usize) -> Vec<MatchRow> {
+    let opponents = [Team::Reactive.into(), MatchTeam::parse("ours-without-second-level").unwrap()];
+    let matches = matches(plan(4, 4.0, 2, &opponents));
+    on_threads(threads, || matches.play_shard(shard, &directory.file(shard), GO_ON)).unwrap()
 }
 
 #[test]
 fn threads_shards_and_interrupts_change_no_byte() {
     let hash = |rows: &[MatchRow]| csv_hash(&to_csv(rows).unwrap());
-    let alone = Directory::new("alone");
-    let rows = alone.play(Shard::WHOLE, 1);
+    let alone = Directory::new("matches-alone");
+    let rows = play(&alone, Shard::WHOLE, 1);
     assert_eq!(rows.len(), 4);
-    let parts = Directory::new("parts");
+    let parts = Directory::new("matches-parts");
     let halves = [1, 2].map(|i| {
         let shard = Shard::new(i, 2).unwrap();
-        parts.play(shard, 2);
-        read::<MatchRow>(&parts.0.join(shard.file_name())).unwrap().unwrap()
+        play(&parts, shard, 2);
+        read::<MatchRow>(&parts.file(shard)).unwrap().unwrap()
     });
     let (identity, merged) = merge(halves.to_vec()).unwrap();
     assert_eq!((hash(&merged), identity.plan.len()), (hash(&rows), 4));
     // The last line torn off: it is played again, the others are not.
-    let file = alone.0.join(Shard::WHOLE.file_name());
+    let file = alone.file(Shard::WHOLE);
     let bytes = fs::read(&file).unwrap();
     fs::write(&file, &bytes[..bytes.len() - 3]).unwrap();
-    assert_eq!(hash(&alone.play(Shard::WHOLE, 2)), hash(&rows));
+    assert_eq!(hash(&play(&alone, Shard::WHOLE, 2)), hash(&rows));
 }
 
 #[test]
 fn evaluations_of_different_worlds_differ_and_a_plan_keeps_its_world() {
-    let of = |world: WorldPlan| {
-        let plan = MatchPlan {
-            seed: 4,
-            league: "division-b".to_owned(),
-            world,
-            duration_s: 4.0,
-            pairings: MatchPlan::against(MatchTeam::ours(), &[Team::Reactive.into()]),
-            matches: 2,
-            strategy: None,
-        };
-        Matches {
-            plan,
-            base: case_library::division_b(),
-            settings: RetrievalSettings::default(),
-            program: "test".to_owned(),
-            names: CaseNames::default(),
-        }
-    };
+    let of = |world| matches(MatchPlan { world, ..plan(4, 4.0, 2, &[Team::Reactive.into()]) });
     let named: WorldPlan = "grsim".parse().unwrap();
     let (nominal, grsim, random) = (of(WorldPlan::default()), of(named), of(WorldPlan::RandomPerMatch));
     let differences =
@@ -170,15 +137,7 @@ fn a_row_keeps_its_41_columns_and_is_read_as_it_was_written() {
 
 #[test]
 fn ratios_goals_and_intervals_are_those_counted_by_hand() {
-    let plan = MatchPlan {
-        seed: 1,
-        league: "ssl-2013".to_owned(),
-        world: WorldPlan::default(),
-        duration_s: 600.0,
-        pairings: MatchPlan::against(MatchTeam::ours(), &[Team::Zone.into()]),
-        matches: 3,
-        strategy: None,
-    };
+    let plan = MatchPlan { league: "ssl-2013".to_owned(), ..plan(1, 600.0, 3, &[Team::Zone.into()]) };
     let rows = [
         row(0, [2, 0], [200.0, 100.0], [6, 2]),
         row(1, [1, 1], [100.0, 100.0], [4, 4]),
@@ -236,15 +195,7 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
 #[test]
 fn a_part_is_worth_what_the_side_with_it_was_ahead() {
     let without = MatchTeam::parse("ours-without-second-level").unwrap();
-    let plan = MatchPlan {
-        seed: 1,
-        league: "division-b".to_owned(),
-        world: WorldPlan::default(),
-        duration_s: 600.0,
-        pairings: MatchPlan::against(MatchTeam::ours(), &[without, Team::Zone.into()]),
-        matches: 2,
-        strategy: None,
-    };
+    let plan = plan(1, 600.0, 2, &[without, Team::Zone.into()]);
     let of = |row: MatchRow| MatchRow { opponent: without, ..row };
     let rows = [
         of(row(0, [2, 0], [200.0, 100.0], [7, 1])),
@@ -284,15 +235,7 @@ fn the_same_matches_by_two_programs_are_compared_match_by_match() {
         program: program.to_owned(),
         case_base: "01234567".to_owned(),
         settings: Vec::new(),
-        plan: MatchPlan {
-            seed,
-            league: "division-b".to_owned(),
-            world: WorldPlan::default(),
-            duration_s: 600.0,
-            pairings: MatchPlan::against(MatchTeam::ours(), &[Team::Zone.into()]),
-            matches: 3,
-            strategy: None,
-        },
+        plan: plan(seed, 600.0, 3, &[Team::Zone.into()]),
     };
     let rows = |goals: [[u32; 2]; 3]| {
         let of = |(number, goals)| row(number, goals, [1.0, 1.0], [goals[0], 0]);
@@ -335,21 +278,8 @@ fn a_host_retrieves_from_the_library_that_its_robots_have() {
     let files = case_tools::Files::from_texts(built_in.name, built_in.rules, &cases);
     let library = Box::leak(Box::new(case_tools::build_without_warnings(&files).unwrap()));
     assert_ne!(library.base().hash(), built_in.base().hash());
-    let matches = Matches {
-        plan: MatchPlan {
-            seed: 11,
-            league: "division-b".to_owned(),
-            world: WorldPlan::default(),
-            duration_s: 120.0,
-            pairings: MatchPlan::against(MatchTeam::ours(), &[Team::Reactive.into(), Team::Zone.into()]),
-            matches: 1,
-            strategy: None,
-        },
-        base: library.base(),
-        settings: RetrievalSettings::default(),
-        program: "test".to_owned(),
-        names: CaseNames::default(),
-    };
+    let plan = plan(11, 120.0, 1, &[Team::Reactive.into(), Team::Zone.into()]);
+    let matches = Matches { base: library.base(), ..matches(plan) };
     let played = matches.play_all(&|| ()).unwrap();
     let retrieved: Vec<_> =
         played.iter().map(|row| arena::ledger::CaseTable::read(&row.sides[0].cases).retrieved).collect();

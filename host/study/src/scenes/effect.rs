@@ -7,7 +7,7 @@ use super::{SceneKind, SceneOutcome, ScenePlan, SceneRow};
 use crate::matches::MatchTeam;
 use crate::statistics::{Count, PairedMeans, PairedShares, detectable, student};
 
-hil_sim::labels! {
+geometry::labels! {
     /// Measure that is compared.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "kebab-case")]
@@ -127,7 +127,6 @@ impl SceneEffect {
     }
 }
 
-/// Confidence of the intervals.
 const CONFIDENCE: f64 = 0.95;
 
 #[cfg(test)]

@@ -35,10 +35,9 @@ use arena::game::{GameConfig, GameError};
 /// an attack, in which a team can pass twice and shoot.
 pub const SCENE_S: f64 = 12.0;
 
-/// Our team.
 const US: Colour = Colour::Blue;
 
-hil_sim::labels! {
+geometry::labels! {
     /// Kind of start of a scene.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
     #[serde(rename_all = "kebab-case")]

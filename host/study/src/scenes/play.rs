@@ -27,7 +27,6 @@ pub struct SceneOutcome {
     pub planned: bool,
 }
 
-/// Plays the scene.
 pub(super) fn play(
     config: &GameConfig,
     kind: SceneKind,

@@ -23,7 +23,6 @@ pub struct SceneRow {
     pub outcome: SceneOutcome,
 }
 
-/// The columns of a line.
 #[derive(Serialize)]
 struct SceneLine {
     kind: SceneKind,

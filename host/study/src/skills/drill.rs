@@ -14,19 +14,14 @@ use super::{Skill, Try, TryResult, catches, kicks, placement, save, story};
 pub(super) use arena::game::RefereeOrder;
 use arena::game::{Game, GameConfig, GameError, ManualReferee, NoWatcher};
 
-/// Our team.
 pub(super) const US: Colour = Colour::Yellow;
 
-/// Start of a try.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
-    /// Description.
     pub(super) description: String,
-    /// Our robots.
     pub(super) ours: Vec<(u8, Pose<Field>)>,
     /// Opponents, who stand.
     pub(super) theirs: Vec<Pose<Field>>,
-    /// The ball at the beginning.
     pub(super) ball: Ball,
     /// Path of the ball: nothing else stands there.
     pub(super) path: Option<Segment<Field>>,
@@ -51,7 +46,6 @@ impl Start {
     }
 }
 
-/// State of a try.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum State {
     /// Undecided.
@@ -62,11 +56,9 @@ pub(super) enum State {
     Failed(String),
 }
 
-/// A moment of a try.
 pub(super) struct Moment<'g> {
     /// Time since the beginning, s.
     pub(super) time: f32,
-    /// The truth.
     pub(super) world: &'g World,
     /// Physical events of the last 10 ms.
     pub(super) events: &'g [PhysicsEvent],
@@ -93,13 +85,11 @@ impl Moment<'_> {
     }
 }
 
-/// A skill's orders and judge.
 pub(super) trait Judge {
     /// Orders to our robots; `None`: the coach gives them.
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, RuleRole, Directive)>> {
         None
     }
-    /// Judges a moment.
     fn judge(&mut self, moment: &Moment<'_>) -> State;
     /// Describes what is missing when time is up.
     fn lacks(&self, moment: &Moment<'_>) -> String;
@@ -123,7 +113,6 @@ fn seed_of(tried: &Try) -> u64 {
     hash.value()
 }
 
-/// The start of a try, and its judge.
 fn judged(tried: &Try, seed: u64) -> (Start, Box<dyn Judge>) {
     fn boxed((start, judge): (Start, impl Judge + 'static)) -> (Start, Box<dyn Judge>) {
         (start, Box::new(judge))
@@ -154,7 +143,6 @@ fn config(tried: &Try, seed: u64, robots: u8) -> GameConfig {
     config
 }
 
-/// Plays a try to its end.
 pub(super) fn play(
     tried: Try,
     backend: &mut dyn Backend<'_>,
@@ -245,12 +233,10 @@ pub(super) fn pose(at: Point<Field>, heading: Angle) -> Pose<Field> {
     Pose { position: at, heading }
 }
 
-/// A field player's directive.
 pub(super) fn player(number: u8, directive: Directive) -> Vec<(u8, RuleRole, Directive)> {
     vec![(number, RuleRole::Player, directive)]
 }
 
-/// Robots of a full team of that league.
 pub(super) fn team_size(league: League) -> u8 {
     if league == League::DivisionA { 11 } else { 6 }
 }

@@ -27,7 +27,7 @@ use crate::store::Experiment;
 use arena::game::GameError;
 pub use rows::{SkillRow, rows};
 
-hil_sim::labels! {
+geometry::labels! {
     /// A skill that is measured.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
     pub enum Skill {

@@ -35,7 +35,6 @@ impl Places {
         Point::default()
     }
 
-    /// Any direction.
     pub(super) fn direction(&mut self) -> Angle {
         Angle::new(self.chance.between(-core::f32::consts::PI, core::f32::consts::PI))
     }

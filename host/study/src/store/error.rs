@@ -126,14 +126,12 @@ pub struct LackingShard {
 }
 
 impl EvaluationError {
-    /// The error of this file.
     pub(crate) fn file(path: &Path) -> impl Fn(io::Error) -> Self + use<> {
         let file = path.to_owned();
         move |error| Self::File { file: file.clone(), error }
     }
 }
 
-/// A file's name in printable form.
 fn printable_path(file: &Path) -> String {
     printable(&file.to_string_lossy()).into_owned()
 }
@@ -153,7 +151,6 @@ fn another(file: &Path, merged: Option<&Path>, differences: &[Difference]) -> St
     }
 }
 
-/// A line for each of these shards.
 fn lines(shards: &[LackingShard]) -> String {
     let line = |LackingShard { shard, trials, of }: &LackingShard| {
         format!("\n  --shard {shard}: {} lacks {trials} of {of} trials", shard.file_name())

@@ -33,7 +33,6 @@ impl LineFile {
         Ok((Self { file, path: path.to_owned() }, bytes))
     }
 
-    /// Path of the file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }

@@ -89,7 +89,6 @@ fn not_finite<R: Row>(columns: &csv::StringRecord, row: &R) -> Option<String> {
     Some(format!("{column} is {}, not a finite number", cells.get(at).unwrap_or_default()))
 }
 
-/// A file of rows that is appended to.
 #[derive(Debug)]
 pub(super) struct RowFile {
     lines: LineFile,

@@ -5,7 +5,6 @@ use std::fmt;
 /// Beginning and end of a file's name, around `2-of-3`.
 pub(crate) type FileKind = (&'static str, &'static str);
 
-/// Files of rows.
 const ROWS: FileKind = ("trials-", ".csv");
 
 /// A part of a plan: every n-th trial, so that all parts take about the same time.
@@ -61,7 +60,6 @@ impl Shard {
         self.name_of(ROWS)
     }
 
-    /// The name of its file of this kind.
     pub(crate) fn name_of(self, (prefix, suffix): FileKind) -> String {
         format!("{prefix}{}-of-{}{suffix}", self.index, self.of)
     }

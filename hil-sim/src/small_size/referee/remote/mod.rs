@@ -137,10 +137,7 @@ impl RemoteMatch {
 
     fn team(&self, team: Colour) -> Option<&packet::TeamInfo> {
         let newest = self.newest.as_ref()?;
-        Some(match team {
-            Colour::Yellow => &newest.yellow,
-            Colour::Blue => &newest.blue,
-        })
+        Some(team.pick(&newest.yellow, &newest.blue))
     }
 
     /// The restart after the stop.
@@ -160,7 +157,6 @@ impl RemoteMatch {
         self.designated().or_else(|| self.mark(self.next()?))
     }
 
-    /// The mark for that restart.
     fn mark(&self, restart: Restart) -> Option<Point<Field>> {
         match restart {
             Restart::Kickoff(_) => Some(Point::new(0.0, 0.0)),

@@ -306,7 +306,6 @@ impl Stage {
         }
     }
 
-    /// Steps until that phase.
     fn until(&mut self, phase: Phase<Colour>, seconds: f32) {
         for _ in 0..(seconds * 1e6) as u64 / self.step.0 {
             if self.phase() == phase {

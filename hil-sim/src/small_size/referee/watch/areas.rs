@@ -11,7 +11,6 @@ use super::super::observation::RobotSeen;
 use super::super::scene::{COLOURS, Scene};
 use super::Episodes;
 
-/// Monitors the defence areas.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Areas {
     attackers: Episodes<Who>,

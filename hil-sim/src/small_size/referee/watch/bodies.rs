@@ -15,7 +15,6 @@ use super::super::observation::{CrashSeen, RobotSeen};
 use super::super::scene::{COLOURS, Scene};
 use super::Episodes;
 
-/// Monitors contacts of robots.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bodies {
     crashes: Episodes<[Who; 2]>,

@@ -25,7 +25,6 @@ use protocol::Who;
 use stop_rules::StopRules;
 use touches::Touches;
 
-/// The monitors, one for each group of rules.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Watch {
     touches: Touches,

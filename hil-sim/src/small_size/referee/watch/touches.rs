@@ -11,7 +11,6 @@ use rules::{Colour, limits};
 use super::super::observation::RobotSeen;
 use super::super::scene::{COLOURS, Scene};
 
-/// Last contact of a robot with the ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) who: Who,
@@ -26,7 +25,6 @@ pub(super) struct Contact {
     pub(super) start: Point<Field>,
 }
 
-/// Contacts of all robots with the ball.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Touches {
     last: Option<Touch>,
@@ -82,7 +80,6 @@ impl Touches {
         self.heights[index(team)]
     }
 
-    /// Time of that team's last touch.
     pub(super) fn last_of(&self, team: Colour) -> Option<Instant> {
         self.times[index(team)]
     }

@@ -187,45 +187,5 @@ fn an_invalid_synchronous_step_is_refused() {
 
 #[test]
 fn no_two_refusals_share_a_code() {
-    let range = crate::parameters::ParameterError::Syntax(String::new());
-    let fault = rules::FieldFault { field: "length", value: 0.0, least: 1.0, most: 2.0 };
-    let all = [
-        Refusal::Undecodable,
-        Refusal::NoSuchId(None),
-        Refusal::NoTeam,
-        Refusal::UnknownRobot(0),
-        Refusal::Twice(0),
-        Refusal::MissingMove(0),
-        Refusal::NotANumber(""),
-        Refusal::KickTooFast { id: 0, asked: 0.0, most: 0.0 },
-        Refusal::KickBackwards(0),
-        Refusal::KickAngle { id: 0, asked: 0.0 },
-        Refusal::DribblerBackwards(0),
-        Refusal::OutsideHall(""),
-        Refusal::Pace(0.0),
-        Refusal::Specs(range.clone()),
-        Refusal::Geometry(fault),
-        Refusal::BallModel(String::new()),
-        Refusal::Realism(range),
-        Refusal::UnknownCustom(String::new()),
-        Refusal::BrokenCustom(String::new()),
-        Refusal::Unsupported(""),
-        Refusal::VisionPort(0),
-        Refusal::SyncStep(0.0),
-        Refusal::ModesConfig(""),
-        Refusal::ModesSafely,
-        Refusal::ModesRoll,
-        Refusal::EmptyMove(0),
-        Refusal::VelocityForm(0),
-        Refusal::TooFast { what: "", asked: 0.0, most: 0.0 },
-        Refusal::Partial(""),
-        Refusal::PartialSafely,
-        Refusal::VelocityForce(""),
-        Refusal::Unspecified(0),
-        Refusal::NoPlace(0),
-        Refusal::SpecsLack(""),
-        Refusal::BallSwitch(0.0),
-    ];
-    let codes: BTreeSet<_> = all.iter().map(Refusal::code).collect();
-    assert_eq!(codes.len(), all.len());
+    assert_eq!(BTreeSet::from(Refusal::LABELS).len(), Refusal::LABELS.len());
 }

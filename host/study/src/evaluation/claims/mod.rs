@@ -35,7 +35,7 @@ pub struct Claim {
     pub paper: Judgement,
 }
 
-hil_sim::labels! {
+geometry::labels! {
     /// Verdict on a claim.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "lowercase")]

@@ -89,7 +89,6 @@ impl ClaimPoint {
         point
     }
 
-    /// Sets the number of decimals.
     pub(in super::super) fn with_decimals(self, decimals: usize) -> Self {
         Self { decimals, ..self }
     }
@@ -316,7 +315,6 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Number of decimals of a measure.
 pub(super) fn decimals(measure: Measure) -> usize {
     if measure.is_share() { 1 } else { 2 }
 }

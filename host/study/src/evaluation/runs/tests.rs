@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use brain::Approach;
@@ -11,29 +10,8 @@ use hil_sim::{Configuration, Scenario};
 use super::*;
 use crate::evaluation::plan::EvaluationCell;
 use crate::store::{RunProgress, csv_hash, merge, read, to_csv};
+use crate::testing::{Directory, GO_ON, on_threads};
 use arena::Profile;
-
-/// A directory of a test's own, removed at the end of the test.
-struct Directory(PathBuf);
-
-impl Directory {
-    fn new(name: &str) -> Self {
-        let directory = std::env::temp_dir().join(format!("onetwo-evaluation-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&directory);
-        fs::create_dir_all(&directory).unwrap();
-        Self(directory)
-    }
-
-    fn file(&self, shard: Shard) -> PathBuf {
-        self.0.join(shard.file_name())
-    }
-}
-
-impl Drop for Directory {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
 
 fn evaluation() -> Evaluation<'static> {
     let cell = |profile, scenario, approach| EvaluationCell {
@@ -60,11 +38,8 @@ fn hash(rows: &[TrialRow]) -> String {
     csv_hash(&to_csv(rows).unwrap())
 }
 
-const GO_ON: &(dyn Fn(RunProgress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
-
 fn played(directory: &Directory, shard: Shard, threads: usize) -> Vec<TrialRow> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| evaluation().play_shard(shard, &directory.file(shard), GO_ON)).unwrap()
+    on_threads(threads, || evaluation().play_shard(shard, &directory.file(shard), GO_ON)).unwrap()
 }
 
 #[test]
@@ -94,8 +69,7 @@ fn threads_shards_and_interrupts_change_no_byte() {
     let stop = |progress: RunProgress| {
         if progress.done < 2 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let stopped = pool.install(|| evaluation().play_shard(Shard::WHOLE, &file, &stop));
+    let stopped = on_threads(1, || evaluation().play_shard(Shard::WHOLE, &file, &stop));
     assert!(matches!(stopped, Err(EvaluationError::Stopped)), "{stopped:?}");
     let kept = read::<TrialRow>(&file).unwrap().unwrap().rows;
     assert_eq!(kept.len(), 2);

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use crate::store::Shard;
+use crate::testing::{Directory, on_threads};
 
 use super::value::value;
 use super::*;
@@ -80,14 +81,11 @@ fn round(player: &mut impl for<'u> Player<MatchUnit<'u>>) -> String {
 
 #[test]
 fn threads_and_a_kill_change_nothing_and_a_match_is_that_beside_it_up_to_the_edit() {
-    let directory = std::env::temp_dir().join(format!("onetwo-learning-matches-{}", std::process::id()));
-    let _ = std::fs::remove_dir_all(&directory);
-    std::fs::create_dir_all(&directory).unwrap();
+    let Directory(directory) = &Directory::new("learning-matches");
     let in_journal = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
+        on_threads(threads, || {
             let player =
-                JournalPlayer::<LearningMatch>::open(&directory, "{}", Shard::WHOLE, 5, &STOPPED, &|_| {});
+                JournalPlayer::<LearningMatch>::open(directory, "{}", Shard::WHOLE, 5, &STOPPED, &|_| {});
             round(&mut player.unwrap())
         })
     };
@@ -114,7 +112,6 @@ fn threads_and_a_kill_change_nothing_and_a_match_is_that_beside_it_up_to_the_edi
         assert!(matches.iter().filter(|other| other.same_until_s.is_none()).any(|other| beside(&other)));
         assert_eq!(played.seconds.len(), same + (SCENE_MS / 1000) as usize);
     }
-    std::fs::remove_dir_all(directory).unwrap();
 }
 
 /// A made-up world in which a case loses the ball to a shot at our goal in three of four matches, and without

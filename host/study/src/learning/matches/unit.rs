@@ -236,7 +236,6 @@ struct Recorder {
 }
 
 impl Recorder {
-    /// Takes a tick.
     fn look(&mut self, game: &Game<'_>, us: Colour) {
         let at_ms = ms(game);
         if at_ms >= 1000 * (self.seconds.len() as u32 + 1) {

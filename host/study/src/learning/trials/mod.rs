@@ -108,7 +108,6 @@ impl Sizes {
 
 /// Situations that are drawn to try proposals in: a change of one in a hundred finds 80.
 const SCREENED_SITUATIONS: u32 = 8192;
-/// Looks at a test.
 const LOOKS: usize = 16;
 
 /// The world of trials, and who plays them.
