@@ -106,6 +106,15 @@ impl<'a> Image<'a> {
         Ok(Self { sections, symbols, soft_double, lines: lines_of(&file).map_err(ImageError::Dwarf)? })
     }
 
+    /// Whether the image has contents at one of `len` addresses from `address` on.
+    pub fn occupies(&self, address: u64, len: u64) -> bool {
+        let overlaps = |section: &Section| {
+            section.address < address.saturating_add(len)
+                && address < section.address.saturating_add(section.size)
+        };
+        self.sections.iter().any(overlaps)
+    }
+
     /// The names of all its symbols.
     pub fn symbol_names(&self) -> impl Iterator<Item = &str> {
         self.symbols.iter().map(|symbol| symbol.name.as_str())
