@@ -24,7 +24,7 @@ arguments! {
     period_ms: whole -> u32;
     seed: whole -> u64;
     time_limit_s: real -> f64;
-    loss: short_real -> f32;
+    loss: share -> f32;
     x: short_real -> f32;
     y: short_real -> f32;
     vx: short_real -> f32;
@@ -98,6 +98,11 @@ fn short_real(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f32> {
         return Ok(number);
     }
     Err(refused(format!("{name} {}: take a finite number of 32 bits", shown(value))))
+}
+
+/// A number that the callee holds against its range.
+fn share(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f32> {
+    Ok(real(name, value)? as f32)
 }
 
 fn flag(name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {

@@ -16,7 +16,7 @@ use crate::refused;
 
 /// Episodes of the Small Size simulator.
 #[derive(Clone)]
-#[pyclass(module = "onetwo", skip_from_py_object)]
+#[pyclass(module = "onetwo")]
 pub struct Simulator {
     settings: Settings,
     episode: Episode,

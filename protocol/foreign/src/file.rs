@@ -1,6 +1,6 @@
 //! `file`: files of untrusted sources, read up to a limit. Sizes in bytes.
 
-use std::fs::{self, File, FileType};
+use std::fs::{self, File, FileType, Permissions};
 use std::io::{self, ErrorKind, Read, Write as _};
 use std::path::Path;
 
@@ -57,19 +57,22 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     };
     let mut beside = target.as_os_str().to_owned();
     beside.push(".new");
-    let write = || {
-        let mut file = File::create(&beside)?;
-        // First: the contents may be for its owner alone.
-        if let Some(mode) = mode {
-            file.set_permissions(mode)?;
-        }
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        fs::rename(&beside, &target)
-    };
-    write().inspect_err(|_| {
-        let _ = fs::remove_file(&beside);
-    })
+    let beside = Path::new(&beside);
+    let replaced = write_new(beside, mode, bytes).and_then(|()| fs::rename(beside, &target));
+    if replaced.is_err() {
+        let _ = fs::remove_file(beside);
+    }
+    replaced
+}
+
+fn write_new(path: &Path, mode: Option<Permissions>, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create(path)?;
+    // First: the contents may be for its owner alone.
+    if let Some(mode) = mode {
+        file.set_permissions(mode)?;
+    }
+    file.write_all(bytes)?;
+    file.sync_all()
 }
 
 fn regular(kind: FileType) -> io::Result<()> {

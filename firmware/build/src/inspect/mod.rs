@@ -108,11 +108,10 @@ impl<'a> Image<'a> {
 
     /// Whether the image has contents at one of `len` addresses from `address` on.
     pub fn occupies(&self, address: u64, len: u64) -> bool {
-        let overlaps = |section: &Section| {
-            section.address < address.saturating_add(len)
-                && address < section.address.saturating_add(section.size)
-        };
-        self.sections.iter().any(overlaps)
+        let end = address.saturating_add(len);
+        self.sections
+            .iter()
+            .any(|section| section.address < end && address < section.address.saturating_add(section.size))
     }
 
     /// The names of all its symbols.

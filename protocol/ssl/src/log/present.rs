@@ -1,6 +1,7 @@
 //! `present`: messages of earlier years in today's form. Lengths in mm.
 
 use std::borrow::Cow;
+use std::f32::consts::FRAC_PI_2;
 
 use prost::Message as _;
 
@@ -46,53 +47,63 @@ impl Record {
 /// The field of flat measures, with the lines and arcs that they stand for.
 fn field(flat: &legacy::GeometryFieldSize) -> GeometryFieldSize {
     use FieldShapeType as Shape;
-    let metric = |mm: i32| mm as f32;
-    let (x, y) = (metric(flat.field_length) * 0.5, metric(flat.field_width) * 0.5);
-    let (radius, stretch) = (metric(flat.defense_radius), metric(flat.defense_stretch) * 0.5);
+    let (x, y) = (flat.field_length as f32 * 0.5, flat.field_width as f32 * 0.5);
+    let (radius, stretch) = (flat.defense_radius as f32, flat.defense_stretch as f32 * 0.5);
     let front = x - radius;
-    let line = |name: &str, shape: Shape, from: (f32, f32), to: (f32, f32)| FieldLineSegment {
+    let lines = [
+        ("TopTouchLine", Shape::TopTouchLine, (-x, y), (x, y)),
+        ("BottomTouchLine", Shape::BottomTouchLine, (-x, -y), (x, -y)),
+        ("LeftGoalLine", Shape::LeftGoalLine, (-x, -y), (-x, y)),
+        ("RightGoalLine", Shape::RightGoalLine, (x, -y), (x, y)),
+        ("HalfwayLine", Shape::HalfwayLine, (0.0, -y), (0.0, y)),
+        ("LeftPenaltyStretch", Shape::LeftPenaltyStretch, (-front, -stretch), (-front, stretch)),
+        ("RightPenaltyStretch", Shape::RightPenaltyStretch, (front, -stretch), (front, stretch)),
+    ];
+    // Centre, radius, and the quarters of a circle between which it lies.
+    let arcs = [
+        ("CenterCircle", (0.0, 0.0), flat.center_circle_radius as f32, [0.0, 4.0]),
+        ("LeftFieldLeftPenaltyArc", (-x, stretch), radius, [0.0, 1.0]),
+        ("LeftFieldRightPenaltyArc", (-x, -stretch), radius, [3.0, 4.0]),
+        ("RightFieldLeftPenaltyArc", (x, -stretch), radius, [2.0, 3.0]),
+        ("RightFieldRightPenaltyArc", (x, stretch), radius, [1.0, 2.0]),
+    ];
+    let thickness = flat.line_width as f32;
+    let line = lines.map(|(name, shape, p1, p2)| FieldLineSegment {
         name: name.to_owned(),
-        p1: Vector2f { x: from.0, y: from.1 },
-        p2: Vector2f { x: to.0, y: to.1 },
-        thickness: metric(flat.line_width),
+        p1: vector(p1),
+        p2: vector(p2),
+        thickness,
         r#type: Some(shape as i32),
-    };
-    let arc = |name: &str, shape: Shape, centre: (f32, f32), radius: f32, quarter: f32| FieldCircularArc {
-        name: name.to_owned(),
-        center: Vector2f { x: centre.0, y: centre.1 },
-        radius,
-        a1: quarter * std::f32::consts::FRAC_PI_2,
-        a2: (quarter + if shape == Shape::CenterCircle { 4.0 } else { 1.0 }) * std::f32::consts::FRAC_PI_2,
-        thickness: metric(flat.line_width),
-        r#type: Some(shape as i32),
-    };
+    });
+    let arc = arcs.map(|(name, center, radius, quarters)| {
+        let [a1, a2] = quarters.map(|quarters| quarters * FRAC_PI_2);
+        FieldCircularArc {
+            name: name.to_owned(),
+            center: vector(center),
+            radius,
+            a1,
+            a2,
+            thickness,
+            r#type: None,
+        }
+    });
     GeometryFieldSize {
         field_length: flat.field_length,
         field_width: flat.field_width,
         goal_width: flat.goal_width,
         goal_depth: flat.goal_depth,
         boundary_width: flat.boundary_width.saturating_add(flat.referee_width),
-        field_lines: vec![
-            line("TopTouchLine", Shape::TopTouchLine, (-x, y), (x, y)),
-            line("BottomTouchLine", Shape::BottomTouchLine, (-x, -y), (x, -y)),
-            line("LeftGoalLine", Shape::LeftGoalLine, (-x, -y), (-x, y)),
-            line("RightGoalLine", Shape::RightGoalLine, (x, -y), (x, y)),
-            line("HalfwayLine", Shape::HalfwayLine, (0.0, -y), (0.0, y)),
-            line("LeftPenaltyStretch", Shape::LeftPenaltyStretch, (-front, -stretch), (-front, stretch)),
-            line("RightPenaltyStretch", Shape::RightPenaltyStretch, (front, -stretch), (front, stretch)),
-        ],
-        field_arcs: vec![
-            arc("CenterCircle", Shape::CenterCircle, (0.0, 0.0), metric(flat.center_circle_radius), 0.0),
-            arc("LeftFieldLeftPenaltyArc", Shape::Undefined, (-x, stretch), radius, 0.0),
-            arc("LeftFieldRightPenaltyArc", Shape::Undefined, (-x, -stretch), radius, 3.0),
-            arc("RightFieldLeftPenaltyArc", Shape::Undefined, (x, -stretch), radius, 2.0),
-            arc("RightFieldRightPenaltyArc", Shape::Undefined, (x, stretch), radius, 1.0),
-        ],
+        field_lines: line.into(),
+        field_arcs: arc.into(),
         center_circle_radius: Some(flat.center_circle_radius),
         line_thickness: Some(flat.line_width),
         goal_center_to_penalty_mark: Some(flat.penalty_spot_from_field_line_dist),
         ..GeometryFieldSize::default()
     }
+}
+
+fn vector((x, y): (f32, f32)) -> Vector2f {
+    Vector2f { x, y }
 }
 
 #[cfg(test)]
