@@ -49,8 +49,7 @@ impl<S: SpiDevice> Settings<S> {
             let Some(read) = transfer.get_mut(..=usize::from(register.len)) else { continue };
             self.bus.transaction(&mut [Operation::TransferInPlace(read)])?;
             let mask = mask(number);
-            let differs = |(read, set): (&u8, &u8)| (read ^ set) & mask != 0;
-            if read.iter().skip(1).zip(&register.bytes).any(differs) {
+            if read.iter().skip(1).zip(&register.bytes).any(|(read, set)| (read ^ set) & mask != 0) {
                 return Ok(false);
             }
         }

@@ -84,8 +84,8 @@ impl FileKind {
 
     fn of_text(text: &str) -> Self {
         let text = text.trim_start_matches('\u{feff}').trim();
-        let is_statement = |line: &&str| !line.is_empty() && !line.starts_with('#');
-        let statement = text.lines().map(str::trim).find(is_statement).unwrap_or_default();
+        let mut lines = text.lines().map(str::trim);
+        let statement = lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
         let lower = text.get(..512).unwrap_or(text).to_ascii_lowercase();
         if host::shell::key::parse(text).is_ok() {
             Self::Key
@@ -131,21 +131,21 @@ fn first_bytes(source: impl io::Read) -> io::Result<Vec<u8>> {
 
 /// True of `[table]` and of `key = value`.
 fn is_toml(line: &str) -> bool {
-    let is_name =
-        |name: &str| !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "_-.\"' ".contains(c));
     let line = line.split_once('#').map_or(line, |(before, _)| before).trim();
     let table = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
-    let table = table.map(|name| name.trim_start_matches('[').trim_end_matches(']'));
-    table.is_some_and(is_name) || line.split_once('=').is_some_and(|(key, _)| is_name(key.trim()))
+    let key = line.split_once('=').map(|(key, _)| key);
+    let name = table.map(|name| name.trim_start_matches('[').trim_end_matches(']')).or(key);
+    name.is_some_and(|name| is_name(name, "_-.\"' "))
 }
 
 /// True of a line of several names of columns.
 fn is_csv(line: &str) -> bool {
-    let is_name = |name: &str| {
-        let name = name.trim();
-        !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "_-.%\"/ ".contains(c))
-    };
-    line.contains(',') && line.split(',').all(is_name)
+    line.contains(',') && line.split(',').all(|name| is_name(name, "_-.%\"/ "))
+}
+
+/// True of letters, digits and the other characters that a name may have.
+fn is_name(name: &str, others: &str) -> bool {
+    !name.trim().is_empty() && name.chars().all(|c| c.is_alphanumeric() || others.contains(c))
 }
 
 /// Why a file is not written.
@@ -247,9 +247,8 @@ pub(crate) fn check_directory(out: &Path, input: &Path) -> Result<(), Destinatio
 /// has.
 pub(crate) fn check_library(directory: &Path, inputs: &[&Path]) -> Result<(), DestinationError> {
     let whole = real(directory);
-    let overlaps = |input: &&Path| real(input).starts_with(&whole);
-    if let Some(input) = inputs.iter().copied().find(|input| overlaps(input)) {
-        return Err(DestinationError::Input(input.to_owned()));
+    if let Some(input) = inputs.iter().find(|input| real(input).starts_with(&whole)) {
+        return Err(DestinationError::Input((*input).to_owned()));
     }
     let mut left = vec![directory.to_owned()];
     while let Some(directory) = left.pop().filter(|directory| directory.exists()) {

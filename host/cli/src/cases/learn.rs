@@ -155,26 +155,27 @@ const EVIDENCE: (&str, FileKind) = ("evidence.jsonl", FileKind::Json);
 const REPORT: (&str, FileKind) = ("report.json", FileKind::Json);
 const PAGE: (&str, FileKind) = ("report.html", FileKind::Html);
 
+/// Writes a file of that name and kind into the directory.
+fn put(out: &Path, (name, kind): (&str, FileKind), text: &str) -> Result<(), DestinationError> {
+    destination::write(&out.join(name), kind, text.as_bytes())
+}
+
 /// Writes evidence, report and library.
 fn write(learned: &Learned, out: &Path) -> Result<(), Failure> {
-    let put = |(name, kind): (&str, FileKind), text: &str| {
-        let file = out.join(name);
-        destination::write(&file, kind, text.as_bytes())
-    };
-    put(EVIDENCE, &learned.evidence.to_jsonl())?;
-    put(REPORT, &format!("{:#}\n", study::learning::json(learned)))?;
-    put(PAGE, &study::learning::html(learned))?;
+    put(out, EVIDENCE, &learned.evidence.to_jsonl())?;
+    put(out, REPORT, &format!("{:#}\n", study::learning::json(learned)))?;
+    put(out, PAGE, &study::learning::html(learned))?;
     let library = &learned.end.files;
     let directory = out.join(&library.league);
     destination::clear_library(&directory)?;
     destination::make_directory(&directory)?;
-    put((&format!("{}/league.toml", library.league), FileKind::Toml), &library.rules.text)?;
+    put(out, (&format!("{}/league.toml", library.league), FileKind::Toml), &library.rules.text)?;
     for file in &library.cases {
         let path = directory.join(format!("{}.toml", file.name));
         if let Some(region) = path.parent() {
             destination::make_directory(region)?;
         }
-        put((&format!("{}/{}.toml", library.league, file.name), FileKind::Toml), &file.text)?;
+        put(out, (&format!("{}/{}.toml", library.league, file.name), FileKind::Toml), &file.text)?;
     }
     Ok(())
 }

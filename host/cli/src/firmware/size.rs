@@ -185,18 +185,22 @@ fn json(known: &Known, largest: usize) -> SizeJson<'_> {
     }
 }
 
+/// The remark on a number that is over its budget.
+const fn over(is_over: bool) -> &'static str {
+    if is_over { "; over its budget" } else { "" }
+}
+
 fn write_sizes(known: &Known, largest: usize, text: &mut String) {
     let Known { program, sizes, measured } = known;
     let Budget { flash, ram } = known.budget();
-    let over = if known.budget().check(sizes).is_err() { "; over its budget" } else { "" };
+    let over_size = over(known.budget().check(sizes).is_err());
     let name = program.name();
     let _ = writeln!(
         text,
-        "{name}: {} of {flash} B flash, {} of {ram} B RAM before the stack{over}",
+        "{name}: {} of {flash} B flash, {} of {ram} B RAM before the stack{over_size}",
         sizes.flash, sizes.ram
     );
     if let Some(Measured { stack, median, worst, steps }) = measured {
-        let over = |is_over: bool| if is_over { "; over its budget" } else { "" };
         let _ = writeln!(text, "  deepest stack {stack} of {STACK_BUDGET} B{}", over(*stack > STACK_BUDGET));
         let _ = writeln!(
             text,

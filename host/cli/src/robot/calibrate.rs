@@ -92,8 +92,8 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<(), Failure> {
 
 fn of_kicks(key: &'static str, file: &Path, points: usize) -> Result<Change, DescriptionError> {
     let measured = measurements::kicks(file)?;
-    let wrong = |what| DescriptionError::NoFit { key, what };
-    let fit = fit::pulses(&measurements::values(&measured), points).map_err(wrong)?;
+    let fit = fit::pulses(&measurements::values(&measured), points)
+        .map_err(|what| DescriptionError::NoFit { key, what })?;
     measurements::check_kicks(file, &measured, &fit)?;
     let mut value = Array::new();
     for (speed, micros) in fit.table {

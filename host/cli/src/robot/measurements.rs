@@ -18,6 +18,23 @@ pub(super) struct Row {
     values: (f32, f32),
 }
 
+impl Row {
+    /// Measured speed less that of the table, m/s.
+    fn off_table(&self, fit: &PulseFit) -> f64 {
+        f64::from(self.values.1) - fit.speed_of(f64::from(self.values.0))
+    }
+
+    /// Counts a metre.
+    fn ratio(&self) -> f64 {
+        f64::from(self.values.1) / f64::from(self.values.0)
+    }
+
+    /// Share by which it is off the others' counts a metre.
+    fn off_ratio(&self, others: f64) -> f64 {
+        (self.ratio() / others - 1.0).abs()
+    }
+}
+
 /// The rows without their lines.
 pub(super) fn values(rows: &[Row]) -> Vec<(f32, f32)> {
     rows.iter().map(|row| row.values).collect()
@@ -69,11 +86,13 @@ pub(super) fn kicks(file: &Path) -> Result<Vec<Row>, DescriptionError> {
 
 /// Refuses a kick that the fitted table does not describe.
 pub(super) fn check_kicks(file: &Path, rows: &[Row], fit: &PulseFit) -> Result<(), DescriptionError> {
-    let off = |row: &Row| f64::from(row.values.1) - fit.speed_of(f64::from(row.values.0));
-    let Some(worst) = rows.iter().max_by(|a, b| off(a).abs().total_cmp(&off(b).abs())) else { return Ok(()) };
+    let Some(worst) = rows.iter().max_by(|a, b| a.off_table(fit).abs().total_cmp(&b.off_table(fit).abs()))
+    else {
+        return Ok(());
+    };
     let (pulse, speed) = worst.values;
     let fitted = fit.speed_of(f64::from(pulse));
-    if off(worst).abs() <= SPEED_OFF_MIN + SPEED_OFF_SHARE * fitted {
+    if worst.off_table(fit).abs() <= SPEED_OFF_MIN + SPEED_OFF_SHARE * fitted {
         return Ok(());
     }
     let what = format!(
@@ -126,52 +145,63 @@ pub(super) fn drives(file: &Path, of: &Description) -> Result<Vec<Row>, Descript
 /// Refuses a drive that is not as the others.
 pub(super) fn check_drives(file: &Path, rows: &[Row], per_metre: f64) -> Result<(), DescriptionError> {
     // The median is the drives' own where the mean is drawn away by the one that is wrong.
-    let ratio = |row: &Row| f64::from(row.values.1) / f64::from(row.values.0);
-    let mut ratios: Vec<_> = rows.iter().map(ratio).collect();
+    let mut ratios: Vec<_> = rows.iter().map(Row::ratio).collect();
     ratios.sort_by(f64::total_cmp);
     let middle = if rows.len() > 2 { ratios[ratios.len() / 2] } else { per_metre };
-    let off = |row: &Row| (ratio(row) / middle - 1.0).abs();
-    let Some(worst) = rows.iter().max_by(|a, b| off(a).total_cmp(&off(b))) else { return Ok(()) };
-    if off(worst) <= DRIVE_OFF_MAX {
+    let Some(worst) = rows.iter().max_by(|a, b| a.off_ratio(middle).total_cmp(&b.off_ratio(middle))) else {
+        return Ok(());
+    };
+    if worst.off_ratio(middle) <= DRIVE_OFF_MAX {
         return Ok(());
     }
     let (distance, counts) = worst.values;
     let what = format!(
         "line {}: {distance} m gave {counts} counts, {:.0} % off the others; measure it again, or take the line out",
         worst.line,
-        100.0 * off(worst)
+        100.0 * worst.off_ratio(middle)
     );
     Err(refused(file, what))
 }
 
 /// Two columns of a CSV file, by their names.
 fn read(file: &Path, columns: [&str; 2]) -> Result<Vec<Row>, DescriptionError> {
-    let wrong = |what: String| refused(file, what);
-    let text = foreign::read_text(file, MEASUREMENTS_MAX).map_err(|error| wrong(error.to_string()))?;
+    let text =
+        foreign::read_text(file, MEASUREMENTS_MAX).map_err(|error| refused(file, error.to_string()))?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
+    let header = reader.headers().map_err(|error| refused(file, error.to_string()))?.clone();
     let places = columns.map(|column| header.iter().position(|name| name == column));
     let [Some(first), Some(second)] = places else {
-        return Err(wrong(format!("the first line must name the columns {} and {}", columns[0], columns[1])));
+        let what = format!("the first line must name the columns {} and {}", columns[0], columns[1]);
+        return Err(refused(file, what));
     };
     if let Some(twice) =
         columns.iter().find(|column| header.iter().filter(|name| name == *column).count() > 1)
     {
-        return Err(wrong(format!("the first line names {twice} twice")));
+        return Err(refused(file, format!("the first line names {twice} twice")));
     }
     let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|error| wrong(error.to_string()))?;
+        let record = record.map_err(|error| refused(file, error.to_string()))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let number = |place: usize, column: &str| {
-            let text = record.get(place).unwrap_or_default();
-            let number = text.parse::<f32>().ok().filter(|number| number.is_finite());
-            let said = foreign::excerpt(text, 40);
-            number.ok_or_else(|| wrong(format!("line {line}: {column} is {said:?}; give a number")))
-        };
-        rows.push(Row { line, values: (number(first, columns[0])?, number(second, columns[1])?) });
+        let values = (number(&record, first), number(&record, second));
+        match values {
+            (Ok(first), Ok(second)) => rows.push(Row { line, values: (first, second) }),
+            (Err(text), _) => return Err(refused(file, no_number(line, columns[0], &text))),
+            (_, Err(text)) => return Err(refused(file, no_number(line, columns[1], &text))),
+        }
     }
     Ok(rows)
+}
+
+/// A cell's number, or its text.
+fn number(record: &csv::StringRecord, place: usize) -> Result<f32, String> {
+    let text = record.get(place).unwrap_or_default();
+    let number = text.parse::<f32>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| foreign::excerpt(text, 40))
+}
+
+fn no_number(line: u64, column: &str, text: &str) -> String {
+    format!("line {line}: {column} is {text:?}; give a number")
 }
 
 /// Largest file of measurements, bytes.

@@ -61,15 +61,15 @@ impl LogMessages {
 
     /// The next camera frame whose camera has been there before.
     fn look_ahead(&mut self) -> Option<FrameHead> {
-        let is_known = |head: &FrameHead| self.clock.has_camera(head.camera_id);
-        if let Some(head) = self.ahead.iter().filter_map(|(record, _)| frame(record)).find(is_known) {
+        let mut heads = self.ahead.iter().filter_map(|(record, _)| frame(record));
+        if let Some(head) = heads.find(|head| self.clock.has_camera(head.camera_id)) {
             return Some(head);
         }
         while self.ahead.len() < AHEAD_MAX {
             let record = self.reader.next()?;
             let head = frame(&record);
             self.ahead.push_back((record, self.reader.counts().joined));
-            if let Some(head) = head.filter(is_known) {
+            if let Some(head) = head.filter(|head| self.clock.has_camera(head.camera_id)) {
                 return Some(head);
             }
         }

@@ -55,10 +55,9 @@ fn sample(process: u32, into: &Mutex<VecDeque<Duration>>) {
 
 /// Time that all threads of a process could have run and had no processor (Linux; elsewhere it is unknown).
 fn time_waited(process: u32) -> Option<Duration> {
-    let tasks = fs::read_dir(format!("/proc/{process}/task")).ok()?;
-    let waited = |text: String| text.split(' ').nth(1)?.parse().ok();
-    let of_task = |task: fs::DirEntry| waited(fs::read_to_string(task.path().join("schedstat")).ok()?);
-    let nanoseconds: u64 = tasks.flatten().filter_map(of_task).sum();
+    let tasks = fs::read_dir(format!("/proc/{process}/task")).ok()?.flatten();
+    let statistics = tasks.filter_map(|task| fs::read_to_string(task.path().join("schedstat")).ok());
+    let nanoseconds = statistics.filter_map(|text| text.split(' ').nth(1)?.parse::<u64>().ok()).sum();
     Some(Duration::from_nanos(nanoseconds))
 }
 
