@@ -146,19 +146,28 @@ impl Found {
             let path = entry.path();
             let file_name = entry.file_name();
             let name = file_name.to_string_lossy();
+            // An editor's lock (`.#one.toml`), what other systems keep beside a file (`._one.toml`), `.git`.
+            if name.starts_with('.') {
+                continue;
+            }
             if path.is_dir() {
                 if depth < DEPTH_MAX {
                     self.enter(&path, &format!("{prefix}{name}/"), depth + 1);
                 }
-            } else if let Some(stem) = name.strip_suffix(".toml") {
+            } else if let Some(stem) = without_ending(&name) {
                 if foreign::printable(&name) != name {
                     let message = "a file's name has characters that cannot be shown";
                     self.error(code::MISPLACED, path, message, "rename it: letters, digits and dashes");
                     continue;
                 }
-                let is_league = depth == 0 && stem == LEAGUE;
-                if is_league || depth == 1 {
-                    self.read(path, format!("{prefix}{stem}"), is_league);
+                let is_league = depth == 0 && stem.eq_ignore_ascii_case(LEAGUE);
+                let stem = if is_league { LEAGUE } else { stem };
+                let case = format!("{prefix}{stem}");
+                if self.cases.iter().any(|file| file.name == case) {
+                    let message = format!("{case} has two files, whose endings differ");
+                    self.error(code::MISPLACED, path, message, "keep the one that ends in .toml");
+                } else if is_league || depth == 1 {
+                    self.read(path, case, is_league);
                 } else {
                     let message = format!("{prefix}{name} is not at <region>/<name>.toml");
                     let hint = "move it into the directory of its region, right below league.toml";
@@ -185,6 +194,14 @@ impl Found {
     }
 }
 
+/// The name without `.toml`, in upper or lower case.
+fn without_ending(name: &str) -> Option<&str> {
+    let (stem, ending) = name.split_at_checked(name.len().checked_sub(ENDING.len())?)?;
+    (ending.eq_ignore_ascii_case(ENDING) && !stem.is_empty()).then_some(stem)
+}
+
+/// Ending of every file of a library.
+const ENDING: &str = ".toml";
 /// The league's own file, without `.toml`.
 const LEAGUE: &str = "league";
 /// Maximum length of a library file, bytes: the longest case of ours has 3 kB.

@@ -53,14 +53,31 @@ pub fn workspace_root() -> PathBuf {
     here.ancestors().nth(2).unwrap_or(here).to_path_buf()
 }
 
-/// All boards of the workspace, by name.
+/// All boards of the workspace, by name: those that were there when this was compiled, and those whose
+/// directories were added since (`firmware new-board`).
 pub fn boards() -> &'static [Board] {
     static BOARDS: OnceLock<Vec<Board>> = OnceLock::new();
     const MANIFESTS: &[(&str, &str)] = &include!(concat!(env!("OUT_DIR"), "/boards.rs"));
     BOARDS.get_or_init(|| {
         let board = |(name, manifest): &(&str, &str)| Board::parse(name, manifest);
-        MANIFESTS.iter().map(|known| board(known).expect("the build script has read it")).collect()
+        let known = MANIFESTS.iter().map(|known| board(known).expect("the build script has read it"));
+        let mut boards: Vec<Board> = known.collect();
+        boards.extend(added_boards(&workspace_root().join("firmware/boards"), MANIFESTS));
+        boards.sort_by(|a, b| a.name.cmp(&b.name));
+        boards
     })
+}
+
+/// The boards of a directory that are none of `known`; what is no board is left out.
+fn added_boards(directory: &Path, known: &[(&str, &str)]) -> Vec<Board> {
+    let entries = std::fs::read_dir(directory).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let added = names.filter(|name| known.iter().all(|(known, _)| known != name));
+    let parsed = added.filter_map(|name| {
+        let manifest = std::fs::read_to_string(directory.join(&name).join("Cargo.toml")).ok()?;
+        Board::parse(&name, &manifest).ok()
+    });
+    parsed.collect()
 }
 
 /// The robots' processor: a Cortex-M4F, hard float. What all robots' crates are checked for; a board may
@@ -84,6 +101,24 @@ mod tests {
                 assert_ne!(firmware.image, other.image);
             }
         }
+    }
+
+    #[test]
+    fn a_board_that_was_written_after_the_program_was_built_is_known_to_it() {
+        let root = std::env::temp_dir().join(format!("onetwo-added-board-{}", std::process::id()));
+        let tables = root.join("docs");
+        std::fs::create_dir_all(root.join("firmware/boards/notes")).unwrap();
+        std::fs::create_dir_all(&tables).unwrap();
+        std::fs::copy(workspace_root().join("docs/architecture.md"), tables.join("architecture.md")).unwrap();
+        for (name, chip) in [("mine", "stm32f407vg"), ("yours", "nrf52840")] {
+            new_board(&root, name, chip).unwrap();
+        }
+        let mut added = added_boards(&root.join("firmware/boards"), &[("yours", "")]);
+        let board = added.pop().unwrap();
+        assert!(added.is_empty() && board.firmware.is_some());
+        assert_eq!((board.name.as_str(), board.package.as_str()), ("mine", "board-mine"));
+        assert!(added_boards(&root.join("nowhere"), &[]).is_empty());
+        std::fs::remove_dir_all(root).unwrap();
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub struct BaseCounts {
     pub late: u32,
     /// Questions to robots that had none of the host's frames in time.
     pub questions: u32,
-    /// Starts of the chip after the first: its supply dipped, or it stood still.
+    /// Starts of the chip after the first: its supply dipped, a register was upset, or it stood still.
     pub restarts: u32,
     /// Frames of robots that were joined.
     pub robots: Joined,
@@ -347,5 +347,5 @@ const ASSEMBLY_TIME_MAX: Duration = Duration::millis(60);
 /// Time after which a chip that sends stands still: three payloads without repeats, or one with all, take 2
 /// ms.
 const SENDING_TIME_MAX: Duration = Duration::millis(20);
-/// Period in which the chip's registers are checked.
+/// Period in which the chip's registers are read back: 56 bytes on the bus and nothing on the air.
 const CHECK_EVERY: Duration = Duration::millis(100);

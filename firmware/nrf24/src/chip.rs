@@ -12,6 +12,7 @@ use rf24::radio::{Nrf24Error, RF24, RadioConfig};
 use rf24::{DataRate, StatusFlags};
 
 use crate::fragment::{PAYLOAD_MAX, Payload};
+use crate::settings::Settings;
 
 /// Bits a second on the air.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,12 +89,12 @@ impl From<Nrf24Error<SpiError, PinError>> for Fault {
 
 /// A chip with its lines.
 pub(crate) struct Lines<S, C, D> {
-    pub(crate) radio: RF24<S, C, D>,
+    pub(crate) radio: RF24<Settings<S>, C, D>,
 }
 
 impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
     pub(crate) fn new(spi: S, chip_enable: C, pause: D) -> Self {
-        Self { radio: RF24::new(chip_enable, spi, pause) }
+        Self { radio: RF24::new(chip_enable, Settings::new(spi), pause) }
     }
 
     /// Sets the chip up as after power on: 16 bits of check sum, payloads of any length, acknowledgements
@@ -124,7 +125,8 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
         Ok(())
     }
 
-    /// Returns whether the chip still has its settings: after a dip of its supply it has not.
+    /// Returns whether the chip still has every setting: after a dip of its supply it has none, after an upset
+    /// it lacks one. All registers are read for it ([`Settings`]).
     pub(crate) fn is_set(&mut self) -> Result<bool, Fault> {
         Ok(self.radio.get_payload_length()? == PAYLOAD_MAX as u8)
     }

@@ -17,7 +17,7 @@ use crate::fragment::{Assembler, Cutter, Fragments, Joined, NotSent};
 pub struct RobotCounts {
     /// Own frames for which there was no room, or that waited longer than `WAIT_MAX`.
     pub unsent: u32,
-    /// Starts of the chip after the first: its supply dipped.
+    /// Starts of the chip after the first: its supply dipped, or a register was upset.
     pub restarts: u32,
     /// Frames to this robot alone.
     pub own: Joined,
@@ -161,5 +161,5 @@ const WAITING_MAX: usize = 4;
 /// Longest time from a frame's first fragment to its last: four with every repeat take 6 ms; and the base
 /// station sends 32 frames in no less than 30 ms.
 const ASSEMBLY_TIME_MAX: Duration = Duration::millis(8);
-/// Period in which the chip's registers are checked.
+/// Period in which the chip's registers are read back: 56 bytes on the bus and nothing on the air.
 const CHECK_EVERY: Duration = Duration::millis(100);

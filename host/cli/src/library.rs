@@ -11,6 +11,18 @@ use crate::args::{DirectoryArgs, LibraryArgs};
 use crate::output::note;
 use crate::progress::Progress;
 
+/// A library that a match of a league cannot have.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum MatchLibraryError {
+    #[error(transparent)]
+    Library(#[from] LibraryError),
+    /// Its cases are of another field.
+    #[error(
+        "the library's cases are of the field of {library}, the match is one of {league}: give --league {library}, or cases for {league}"
+    )]
+    OtherField { library: &'static str, league: &'static str },
+}
+
 /// Opens the library that the command line names.
 pub(crate) fn open(args: &LibraryArgs) -> Result<LibraryHandle, LibraryError> {
     match &args.directory.library {
@@ -29,14 +41,25 @@ pub(crate) fn read(directory: &Path) -> Result<LibraryHandle, LibraryError> {
     with_bar(|on_progress| LibraryHandle::read(directory, on_progress))
 }
 
-/// The cases that come with a league, or those of a directory; none if neither exists.
+/// The cases that come with a league, or those of a directory, which must be of its field; none if neither
+/// exists.
 pub(crate) fn of_league(
     league: League,
     directory: Option<&Path>,
-) -> Result<Option<LibraryHandle>, LibraryError> {
+) -> Result<Option<LibraryHandle>, MatchLibraryError> {
     match directory {
-        Some(directory) => read(directory).map(Some),
-        None => case_library::league(league.name()).map(|_| LibraryHandle::named(league.name())).transpose(),
+        Some(directory) => {
+            let library_handle = read(directory)?;
+            let library = library_handle.simulated_league()?;
+            if library != league {
+                return Err(MatchLibraryError::OtherField { library: library.name(), league: league.name() });
+            }
+            Ok(Some(library_handle))
+        }
+        None => case_library::league(league.name())
+            .map(|_| LibraryHandle::named(league.name()))
+            .transpose()
+            .map_err(Into::into),
     }
 }
 
@@ -45,7 +68,7 @@ pub(crate) fn of_league(
 pub(crate) fn of_match(
     directory: &DirectoryArgs,
     league: League,
-) -> Result<Option<LibraryHandle>, LibraryError> {
+) -> Result<Option<LibraryHandle>, MatchLibraryError> {
     let library_handle = of_league(league, directory.library.as_deref())?;
     if library_handle.is_none() {
         note!("no cases come with {}: robots that are left free play reactively", league.name());

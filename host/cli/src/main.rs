@@ -8,6 +8,7 @@
 mod args;
 mod cases;
 mod control;
+mod destination;
 mod evaluate;
 mod failure;
 mod firmware;

@@ -5,6 +5,7 @@
 //! through [`foreign::printable`] first, so that it cannot end the line. Nothing else in this crate prints (a
 //! test checks this).
 
+use std::borrow::Cow;
 use std::env;
 use std::fmt::{Arguments, Display};
 use std::io::{self, BufWriter, IsTerminal as _, StdoutLock, Write};
@@ -114,6 +115,14 @@ macro_rules! note {
 }
 pub(crate) use note;
 
+/// A word of a command line as a shell takes it.
+pub(crate) fn quoted(word: &str) -> Cow<'_, str> {
+    if !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || "_-./:=,+@%".contains(c)) {
+        return Cow::Borrowed(word);
+    }
+    Cow::Owned(format!("'{}'", word.replace('\'', r"'\''")))
+}
+
 pub(crate) use foreign::printable_path;
 
 #[cfg(test)]
@@ -131,6 +140,20 @@ mod tests {
         assert!(!ColorChoice::Auto.colours(true, false, true), "TERM=dumb");
         assert!(ColorChoice::Always.colours(false, true, true));
         assert!(!ColorChoice::Never.colours(true, false, false));
+    }
+
+    #[test]
+    fn a_word_is_quoted_where_a_shell_would_read_it_otherwise() {
+        for (word, expected) in [
+            ("out/my-lib", "out/my-lib"),
+            ("thr_c=1200", "thr_c=1200"),
+            ("my lib", "'my lib'"),
+            ("it's", r"'it'\''s'"),
+            ("$HOME", "'$HOME'"),
+            ("", "''"),
+        ] {
+            assert_eq!(quoted(word), expected);
+        }
     }
 
     #[test]

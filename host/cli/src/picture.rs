@@ -9,14 +9,17 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::Failure;
+use crate::destination::{self, FileKind};
 
 /// Writes the SVG, or its PNG when the name ends in `.png`.
 pub(crate) fn write(file: &Path, svg: &str) -> Result<(), Failure> {
-    let written = match bytes(file, svg) {
-        Ok(bytes) => std::fs::write(file, bytes).map_err(SnapshotError::Write),
-        Err(error) => Err(error),
-    };
-    written.map_err(|error| Unwritten { file: file.to_owned(), error }.into())
+    let bytes = bytes(file, svg).map_err(|error| Unwritten { file: file.to_owned(), error })?;
+    Ok(destination::write(file, kind(file), &bytes)?)
+}
+
+/// Kind of the file that [`write`] makes of that name.
+pub(crate) fn kind(file: &Path) -> FileKind {
+    if has_extension(file, "png") { FileKind::Png } else { FileKind::Svg }
 }
 
 #[cfg(feature = "png")]

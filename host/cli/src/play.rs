@@ -25,8 +25,9 @@ use crate::Failure;
 use crate::args::page::PageArgs;
 use crate::args::parsers::{league, match_seconds, match_speed, team};
 use crate::args::{DirectoryArgs, SettingsArgs};
+use crate::destination::check_recording;
 use crate::library;
-use crate::output::{self, note, program_log};
+use crate::output::{self, note, program_log, quoted};
 use crate::progress::Progress;
 use crate::robot_description::ensure_built_for;
 use crate::stop::{signal, stopped_by_hand};
@@ -102,6 +103,7 @@ the match in order: recordings are closed, the summary is printed, and the exit 
 
 pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     ensure_built_for(args.robot.as_deref())?;
+    check_recording(args.record.as_deref(), args.directory.library.as_deref().as_slice())?;
     let mut config = GameConfig::new(args.league, args.seed, args.duration).between(args.blue, args.yellow);
     config.world = args.world;
     let settings = args.settings.choose()?.settings;
@@ -259,6 +261,21 @@ fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> i
     }
     let mut text =
         if args.duration == 600.0 { String::new() } else { format!(" --duration {}", args.duration) };
+    if args.league != League::DivisionB {
+        text.extend([" --league ", args.league.name()]);
+    }
+    if args.world != WorldChoice::Nominal {
+        text.extend([" --world ", &args.world.to_string()]);
+    }
+    if let Some(robots) = args.robots {
+        text.extend([" --robots ", &robots.to_string()]);
+    }
+    if let Some(directory) = &args.directory.library {
+        text.extend([" --library ", &quoted(&directory.to_string_lossy())]);
+    }
+    for (name, value) in args.settings.given() {
+        text.extend([" --set ", &quoted(&format!("{name}={value}"))]);
+    }
     for (side, team) in [("blue", args.blue), ("yellow", args.yellow)] {
         if team != Team::Ours {
             text.extend([" --", side, " ", team.label()]);
@@ -271,7 +288,7 @@ fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> i
     }
     for (side, command) in [("blue", &args.blue_strategy), ("yellow", &args.yellow_strategy)] {
         if let Some(command) = command {
-            text.extend([" --", side, "-strategy ", &format!("{command:?}")]);
+            text.extend([" --", side, "-strategy ", &quoted(command)]);
         }
     }
     writeln!(out, "trace {}, to see it again: onetwo play --seed {}{text}", report.trace_hash, args.seed)

@@ -3,6 +3,8 @@
 //! Each is a change to the paper's team, so that `onetwo trial` can replay any trial of an evaluation or of
 //! an ablation.
 
+use std::path::Path;
+
 use arena::Setup;
 use arena::cases::LibraryHandle;
 use brain::Positioning;
@@ -12,6 +14,7 @@ use clap::{Args, ValueEnum};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs, parsers};
 use crate::library;
+use crate::output::quoted;
 
 /// The attackers' set-up.
 #[derive(Debug, Args)]
@@ -78,6 +81,11 @@ impl SetupArgs {
         self.library.directory.library.is_none() && !self.no_symmetry && !self.no_opponents
     }
 
+    /// The directory of the library, if it is none that is built in.
+    pub(crate) fn directory(&self) -> Option<&Path> {
+        self.library.directory.library.as_deref()
+    }
+
     /// Name of the library: a league's name, or the directory.
     pub(crate) fn library_label(&self) -> String {
         match &self.library.directory.library {
@@ -111,7 +119,7 @@ impl SetupArgs {
         }
         match &self.library.directory.library {
             Some(directory) => {
-                let _ = write!(flags, " --library {}", directory.display());
+                let _ = write!(flags, " --library {}", quoted(&directory.to_string_lossy()));
             }
             None if self.library.league != "four-legged" => {
                 let _ = write!(flags, " --league {}", self.library.league);
@@ -119,7 +127,7 @@ impl SetupArgs {
             None => {}
         }
         for (name, value) in self.settings.given() {
-            let _ = write!(flags, " --set {name}={value}");
+            let _ = write!(flags, " --set {}", quoted(&format!("{name}={value}")));
         }
         flags
     }

@@ -1,7 +1,6 @@
 //! `onetwo trial`: one trial of the paper, printed as events, as a report or as a figure (Ros et al. 2009
 //! §5.1; docs/case-format.md §5.2).
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -22,8 +21,8 @@ use study::learning::{Change, Edit, LearnError, RETRIEVAL, TrialRecorder};
 use crate::Failure;
 use crate::args::page::{PageArgs, stay};
 use crate::args::parsers::{opponents, profile, scenario};
+use crate::destination::{self, FileKind};
 use crate::output::{self, note};
-use crate::picture::{SnapshotError, Unwritten};
 use crate::setup::SetupArgs;
 
 /// Settings of a trial.
@@ -91,6 +90,10 @@ enum BackendLabel {
 
 pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     let svg = args.svg.as_deref();
+    let recorded = args.record.as_deref().map(|file| (file, FileKind::Json));
+    let drawn = svg.map(|file| (file, FileKind::Svg));
+    let outputs: Vec<_> = recorded.into_iter().chain(drawn).collect();
+    destination::check(&outputs, args.setup.directory().as_slice())?;
     let (mut recording, mut story) = (Recording::default(), TextLog::default());
     let mut recorder = args.record.is_some().then(TrialRecorder::default);
     let mut legged = args.watch.then(|| on_page(args)).transpose()?;
@@ -102,8 +105,7 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
         record(args, recorder, file)?;
     }
     if let Some(file) = svg {
-        fs::write(file, arena::picture(&recording))
-            .map_err(|error| Unwritten { file: file.to_owned(), error: SnapshotError::Write(error) })?;
+        destination::write(file, FileKind::Svg, arena::picture(&recording).as_bytes())?;
     }
     let mut out = output::lines();
     if args.json {
@@ -147,8 +149,7 @@ fn record(args: &TrialArgs, recorder: &TrialRecorder, file: &Path) -> Result<(),
     }
     let world = study::learning::world_of_trials(args.profile);
     let collected = recorder.collected(&library, &world, args.opponents.label());
-    let written = fs::write(file, collected.to_jsonl());
-    written.map_err(|error| Failure::Recording { stem: Some(file.to_owned()), error })
+    Ok(destination::write(file, FileKind::Json, collected.to_jsonl().as_bytes())?)
 }
 
 /// Why a trial with half a library is not recorded.

@@ -51,7 +51,7 @@ fn trace(name: &str, change: impl FnOnce(&mut RecordingHeader, &mut Vec<Record>)
         writer.write(record.at, record.host, record.kind, &[sender, &record.bytes]).expect("memory");
     }
     let file = scratch(name);
-    fs::write(&file, writer.into_inner()).expect("a file");
+    fs::write(&file, writer.finish().expect("memory")).expect("a file");
     file.display().to_string()
 }
 
@@ -185,7 +185,7 @@ fn what_cannot_be_compared_is_refused_with_the_reason() {
     bytes[12..16].copy_from_slice(&1_u32.to_le_bytes());
     fs::write(&old, bytes).expect("a file");
     assert!(
-        refused(&a, &old.display().to_string()).contains("a trace of format 1, the other is of format 2")
+        refused(&a, &old.display().to_string()).contains("a trace of format 1, the other is of format 3")
     );
     let log =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../protocol/ssl/tests/data/grsim_divB_22s.log.gz");

@@ -173,7 +173,7 @@ fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
             last_sent = length;
         }
     }
-    let mut bytes = writer.into_inner();
+    let mut bytes = writer.finish().expect("memory");
     change(&mut bytes, last_sent);
     let file = scratch(name);
     fs::write(&file, bytes).expect("a file");

@@ -5,6 +5,7 @@
 //! `json`. Bad input raises `ValueError` with the program's message; nothing is printed.
 #![forbid(unsafe_code)]
 
+mod argument;
 mod episode;
 mod library;
 mod simulator;
@@ -17,9 +18,9 @@ use pyo3::prelude::*;
 #[pyo3(name = "_native")]
 mod onetwo_native {
     #[pymodule_export]
-    use super::library::{Library, explain, retrieve};
+    use super::library::{_library, Library, explain, retrieve};
     #[pymodule_export]
-    use super::simulator::Simulator;
+    use super::simulator::{_simulator, Simulator};
     #[pymodule_export]
     use super::trial::trial;
 

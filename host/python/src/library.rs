@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use arena::cases::{Answer, Chosen, LibraryHandle, explained_by, problem};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{PyDictMethods, PyString};
 
+use crate::argument::{self, Text};
 use crate::{from_json, refused};
 
 /// A case library, opened once and asked many times.
@@ -18,11 +19,18 @@ pub struct Library {
 impl Library {
     /// Opens a built-in league's library, or one league's directory of case files.
     #[new]
-    #[pyo3(signature = (league = "four-legged", *, directory = None))]
-    fn new(py: Python<'_>, league: &str, directory: Option<PathBuf>) -> PyResult<Self> {
+    #[pyo3(signature = (league = Text::of("four-legged"), *, directory = None))]
+    fn new(
+        py: Python<'_>,
+        #[pyo3(from_py_with = argument::league)] league: Text,
+        directory: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let directory = directory.filter(|directory| !directory.is_none());
+        let directory = directory.map(|given| given.extract::<PathBuf>()).transpose();
+        let directory = directory.map_err(|_| refused("directory: take a path"))?;
         let handle = py.detach(|| match &directory {
             Some(directory) => LibraryHandle::read(directory, |_, _| ()),
-            None => LibraryHandle::named(league),
+            None => LibraryHandle::named(&league),
         });
         Ok(Self { handle: handle.map_err(refused)? })
     }
@@ -49,7 +57,7 @@ impl Library {
     fn retrieve<'py>(
         &self,
         problem: &Bound<'py, PyAny>,
-        settings: Option<&Bound<'py, PyDict>>,
+        settings: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let chosen = chosen(settings)?;
         let line = line_of(problem)?;
@@ -65,13 +73,28 @@ impl Library {
     fn explain<'py>(
         &self,
         problem: &Bound<'py, PyAny>,
-        settings: Option<&Bound<'py, PyDict>>,
+        settings: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let chosen = chosen(settings)?;
         let line = line_of(problem)?;
         let name_of = |id| self.handle.name(id);
         let answer = explained_by(&self.handle.base(), &name_of, &chosen, &line).map_err(refused)?;
         from_json(problem.py(), &answer)
+    }
+
+    fn __copy__(&self) -> Self {
+        Self { handle: self.handle }
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        self.__copy__()
+    }
+
+    /// A pickle names the league or the directory, whose files are read again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String, Option<PathBuf>))> {
+        let directory = self.handle.directory().map(std::path::absolute).transpose()?;
+        let function = py.import("onetwo._native")?.getattr("_library")?;
+        Ok((function, (self.handle.league().to_owned(), directory)))
     }
 
     fn __repr__(&self) -> String {
@@ -91,8 +114,8 @@ impl Library {
 #[pyo3(signature = (problem, *, library = None, settings = None))]
 pub fn retrieve<'py>(
     problem: &Bound<'py, PyAny>,
-    library: Option<&Library>,
-    settings: Option<&Bound<'py, PyDict>>,
+    library: Option<&Bound<'py, PyAny>>,
+    settings: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     Library { handle: handle_or_default(library)? }.retrieve(problem, settings)
 }
@@ -102,31 +125,47 @@ pub fn retrieve<'py>(
 #[pyo3(signature = (problem, *, library = None, settings = None))]
 pub fn explain<'py>(
     problem: &Bound<'py, PyAny>,
-    library: Option<&Library>,
-    settings: Option<&Bound<'py, PyDict>>,
+    library: Option<&Bound<'py, PyAny>>,
+    settings: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     Library { handle: handle_or_default(library)? }.explain(problem, settings)
 }
 
 /// The library's handle, or that of the league that the program takes by default.
-pub fn handle_or_default(library: Option<&Library>) -> PyResult<LibraryHandle> {
-    library.map_or_else(|| LibraryHandle::named("four-legged").map_err(refused), |one| Ok(one.handle()))
+pub fn handle_or_default(library: Option<&Bound<'_, PyAny>>) -> PyResult<LibraryHandle> {
+    let Some(library) = library.filter(|library| !library.is_none()) else {
+        return LibraryHandle::named("four-legged").map_err(refused);
+    };
+    let library = library.cast::<Library>().map_err(|_| refused("library: take a Library"))?;
+    Ok(library.get().handle())
+}
+
+/// A library read from its pickle.
+#[pyfunction]
+pub fn _library(league: &str, directory: Option<PathBuf>) -> PyResult<Library> {
+    let handle = match &directory {
+        Some(directory) => LibraryHandle::read(directory, |_, _| ()),
+        None => LibraryHandle::named(league),
+    };
+    Ok(Library { handle: handle.map_err(refused)? })
 }
 
 /// Retrieval's settings from names and values.
-pub fn chosen(settings: Option<&Bound<'_, PyDict>>) -> PyResult<Chosen> {
+pub fn chosen(settings: Option<&Bound<'_, PyAny>>) -> PyResult<Chosen> {
     let mut given = Vec::new();
-    for (name, value) in settings.into_iter().flat_map(PyDictMethods::iter) {
+    let settings = argument::dict("settings", settings)?;
+    for (name, value) in settings.iter().flat_map(PyDictMethods::iter) {
         given.push((name.str()?.to_string(), value.str()?.to_string()));
     }
     Chosen::of(given.iter().map(|(name, value)| (name.as_str(), value.as_str()))).map_err(refused)
 }
 
-/// The line of JSON in which the program takes a problem: a string as it is, anything else through
-/// `json.dumps`.
+/// The line of JSON in which the program takes a problem: a string as it is, anything else as JSON.
 fn line_of(problem: &Bound<'_, PyAny>) -> PyResult<String> {
     if let Ok(text) = problem.cast::<PyString>() {
         return Ok(text.to_string());
     }
-    problem.py().import("json")?.call_method1("dumps", (problem,))?.extract()
+    let mut line = String::new();
+    argument::json("problem", problem, &mut line)?;
+    Ok(line)
 }

@@ -10,14 +10,19 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rules::{Colour, League};
 
+use crate::argument::{self, Text};
 use crate::episode::{ACTION_LEN, Episode, Settings, observation_len};
 use crate::refused;
 
 /// Episodes of the Small Size simulator.
+#[derive(Clone)]
 #[pyclass(module = "onetwo")]
 pub struct Simulator {
     settings: Settings,
     episode: Episode,
+    /// Seed of the episode, and what has happened in it since: they are what a pickle holds.
+    seed: u64,
+    events: Vec<Event>,
     own: Vec<f32>,
     opponents: Vec<f32>,
     observation: Vec<f32>,
@@ -27,18 +32,18 @@ pub struct Simulator {
 impl Simulator {
     /// A simulator, with its first episode begun from `seed`.
     #[new]
-    #[pyo3(signature = (own = 1, opponents = 0, *, league = "division-b", period_ms = 25, time_limit_s = 30.0, seed = 0))]
+    #[pyo3(signature = (own = 1, opponents = 0, *, league = Text::of("division-b"), period_ms = 25, time_limit_s = 30.0, seed = 0))]
     fn new(
-        own: usize,
-        opponents: usize,
-        league: &str,
-        period_ms: u32,
-        time_limit_s: f64,
-        seed: u64,
+        #[pyo3(from_py_with = argument::own)] own: usize,
+        #[pyo3(from_py_with = argument::opponents_count)] opponents: usize,
+        #[pyo3(from_py_with = argument::league)] league: Text,
+        #[pyo3(from_py_with = argument::period_ms)] period_ms: u32,
+        #[pyo3(from_py_with = argument::time_limit_s)] time_limit_s: f64,
+        #[pyo3(from_py_with = argument::seed)] seed: u64,
     ) -> PyResult<Self> {
-        let found = LEAGUES.into_iter().find(|known| known.name() == league);
+        let found = LEAGUES.into_iter().find(|known| known.name() == &*league);
         let league = found.ok_or_else(|| {
-            refused(format!("league {league:?}: take {}", LEAGUES.map(League::name).join(" or ")))
+            refused(format!("league {:?}: take {}", &*league, LEAGUES.map(League::name).join(" or ")))
         })?;
         if !(1..=ROBOTS_MAX).contains(&own) || opponents > ROBOTS_MAX {
             return Err(refused(format!(
@@ -59,12 +64,16 @@ impl Simulator {
             observation: vec![0.0; observation_len(&settings)],
             settings,
             episode,
+            seed,
+            events: Vec::new(),
         })
     }
 
     /// Begins another episode, from the start positions of that seed.
-    fn reset(&mut self, seed: u64) -> PyResult<()> {
+    fn reset(&mut self, #[pyo3(from_py_with = argument::seed)] seed: u64) -> PyResult<()> {
         self.episode = start(&self.settings, seed)?;
+        self.seed = seed;
+        self.events.clear();
         Ok(())
     }
 
@@ -81,9 +90,9 @@ impl Simulator {
         if let Some(actions) = opponent_actions {
             read("opponent_actions", actions, &mut self.opponents)?;
         }
-        let against = opponent_actions.map_or(&[][..], |_| &self.opponents[..]);
-        let (episode, own) = (&mut self.episode, &self.own);
-        py.detach(|| episode.step(own, against));
+        let against = opponent_actions.map_or_else(Vec::new, |_| self.opponents.clone());
+        let event = Event::Step { own: self.own.clone(), opponents: against };
+        py.detach(|| self.play(event));
         if let Some(into) = into {
             self.observe(into)?;
         }
@@ -133,26 +142,49 @@ impl Simulator {
 
     /// Places the ball on the ground, rolling with that velocity.
     #[pyo3(signature = (x, y, vx = 0.0, vy = 0.0))]
-    fn place_ball(&mut self, x: f32, y: f32, vx: f32, vy: f32) -> PyResult<()> {
-        finite("place_ball", &[x, y, vx, vy])?;
-        self.episode.world.put_ball(Ball::rolling(Point::new(x, y), Vector::new(vx, vy)));
-        Ok(())
+    fn place_ball(
+        &mut self,
+        #[pyo3(from_py_with = argument::x)] x: f32,
+        #[pyo3(from_py_with = argument::y)] y: f32,
+        #[pyo3(from_py_with = argument::vx)] vx: f32,
+        #[pyo3(from_py_with = argument::vy)] vy: f32,
+    ) {
+        self.play(Event::Ball([x, y, vx, vy]));
     }
 
     /// Places a robot, resting: an own one by its index, or an opponent.
     #[pyo3(signature = (index, x, y, heading = 0.0, *, opponent = false))]
-    fn place_robot(&mut self, index: usize, x: f32, y: f32, heading: f32, opponent: bool) -> PyResult<()> {
-        finite("place_robot", &[x, y, heading])?;
-        let (colour, count) = if opponent {
-            (Colour::Yellow, self.settings.opponents)
-        } else {
-            (Colour::Blue, self.settings.own)
-        };
-        let id = RobotId::all().take(count).nth(index);
-        let id = id.ok_or_else(|| refused(format!("index {index}: that team has {count} robots")))?;
-        let pose = Pose { position: Point::new(x, y), heading: Angle::new(heading) };
-        self.episode.world.put(Who { colour, id }, pose);
+    fn place_robot(
+        &mut self,
+        #[pyo3(from_py_with = argument::index)] index: usize,
+        #[pyo3(from_py_with = argument::x)] x: f32,
+        #[pyo3(from_py_with = argument::y)] y: f32,
+        #[pyo3(from_py_with = argument::heading)] heading: f32,
+        #[pyo3(from_py_with = argument::opponent)] opponent: bool,
+    ) -> PyResult<()> {
+        let count = if opponent { self.settings.opponents } else { self.settings.own };
+        if index >= count {
+            return Err(refused(format!("index {index}: that team has {count} robots")));
+        }
+        self.play(Event::Robot { opponent, index: index as u8, pose: [x, y, heading] });
         Ok(())
+    }
+
+    fn __copy__(&self) -> Self {
+        self.clone()
+    }
+
+    /// The episode goes on in the copy as it would here, bit for bit.
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        self.clone()
+    }
+
+    /// A pickle holds the seed and all that happened since; it is played again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Pickled)> {
+        let function = py.import("onetwo._native")?.getattr("_simulator")?;
+        let Settings { league, own, opponents, period_ms, time_limit_s } = self.settings;
+        let events = self.events.iter().map(Event::numbers).collect();
+        Ok((function, (own, opponents, league.name().to_owned(), period_ms, time_limit_s, self.seed, events)))
     }
 
     /// Simulated time since the episode's start, s.
@@ -178,6 +210,90 @@ impl Simulator {
     fn trace_hash(&self) -> String {
         self.episode.trace_hash()
     }
+}
+
+/// Arguments of [`_simulator`].
+type Pickled = (usize, usize, String, u32, f64, u64, Vec<Vec<f32>>);
+
+/// What was done to an episode.
+#[derive(Clone)]
+enum Event {
+    /// A control period with these orders.
+    Step { own: Vec<f32>, opponents: Vec<f32> },
+    /// The ball was placed: place and velocity.
+    Ball([f32; 4]),
+    /// A robot was placed: place and heading.
+    Robot { opponent: bool, index: u8, pose: [f32; 3] },
+}
+
+impl Event {
+    /// As numbers: the kind, then what it has.
+    fn numbers(&self) -> Vec<f32> {
+        match self {
+            Self::Step { own, opponents } => [&[0.0], &own[..], opponents].concat(),
+            Self::Ball(ball) => [&[1.0], &ball[..]].concat(),
+            Self::Robot { opponent, index, pose } => {
+                [&[2.0, f32::from(u8::from(*opponent)), f32::from(*index)], &pose[..]].concat()
+            }
+        }
+    }
+
+    /// An event of its numbers, in an episode with that many numbers of own orders.
+    fn of(numbers: &[f32], own_len: usize) -> Option<Self> {
+        match numbers.split_first()? {
+            (0.0, orders) => {
+                let (own, opponents) = orders.split_at_checked(own_len)?;
+                Some(Self::Step { own: own.to_vec(), opponents: opponents.to_vec() })
+            }
+            (1.0, ball) => Some(Self::Ball(ball.try_into().ok()?)),
+            (2.0, [opponent, index, pose @ ..]) => {
+                let pose = pose.try_into().ok()?;
+                Some(Self::Robot { opponent: *opponent != 0.0, index: *index as u8, pose })
+            }
+            _ => None,
+        }
+    }
+}
+
+impl Simulator {
+    /// Does something to the episode, and keeps it for a pickle.
+    fn play(&mut self, event: Event) {
+        let world = &mut self.episode.world;
+        match &event {
+            Event::Step { own, opponents } => self.episode.step(own, opponents),
+            Event::Ball([x, y, vx, vy]) => {
+                world.put_ball(Ball::rolling(Point::new(*x, *y), Vector::new(*vx, *vy)));
+            }
+            Event::Robot { opponent, index, pose: [x, y, heading] } => {
+                let colour = if *opponent { Colour::Yellow } else { Colour::Blue };
+                let pose = Pose { position: Point::new(*x, *y), heading: Angle::new(*heading) };
+                if let Some(id) = RobotId::new(*index) {
+                    world.put(Who { colour, id }, pose);
+                }
+            }
+        }
+        self.events.push(event);
+    }
+}
+
+/// A simulator read from its pickle.
+#[pyfunction]
+pub fn _simulator(
+    own: usize,
+    opponents: usize,
+    league: &str,
+    period_ms: u32,
+    time_limit_s: f64,
+    seed: u64,
+    events: Vec<Vec<f32>>,
+) -> PyResult<Simulator> {
+    let league = Text::from(league.to_owned());
+    let mut simulator = Simulator::new(own, opponents, league, period_ms, time_limit_s, seed)?;
+    for numbers in events {
+        let event = Event::of(&numbers, ACTION_LEN * own);
+        simulator.play(event.ok_or_else(|| refused("a pickle of another version of onetwo"))?);
+    }
+    Ok(simulator)
 }
 
 fn start(settings: &Settings, seed: u64) -> PyResult<Episode> {

@@ -7,9 +7,9 @@ use case_tools::Reduction;
 use hil_sim::{Configuration, NativeBackend, Scenario};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
-use crate::library::{Library, chosen, handle_or_default};
+use crate::argument::{self, Text};
+use crate::library::{chosen, handle_or_default};
 use crate::{from_json, refused};
 
 /// Plays one trial and returns its report as a dict; flags, defaults and keys are those of `onetwo trial
@@ -17,15 +17,15 @@ use crate::{from_json, refused};
 #[pyfunction]
 #[pyo3(signature = (
     *,
-    scenario = "3",
-    opponents = "dg",
-    approach = "cbr",
+    scenario = Text::of("3"),
+    opponents = Text::of("dg"),
+    approach = Text::of("cbr"),
     seed = 1,
-    profile = "simulated",
+    profile = Text::of("simulated"),
     robots = 2,
     library = None,
     settings = None,
-    positioning = "dependent",
+    positioning = Text::of("dependent"),
     retrievers = None,
     loss = 0.0,
     symmetry = true,
@@ -34,34 +34,34 @@ use crate::{from_json, refused};
 ))]
 pub fn trial<'py>(
     py: Python<'py>,
-    scenario: &str,
-    opponents: &str,
-    approach: &str,
-    seed: u64,
-    profile: &str,
-    robots: usize,
-    library: Option<&Library>,
-    settings: Option<&Bound<'py, PyDict>>,
-    positioning: &str,
-    retrievers: Option<usize>,
-    loss: f32,
-    symmetry: bool,
-    case_opponents: bool,
-    opponents_play_on: bool,
+    #[pyo3(from_py_with = argument::scenario)] scenario: Text,
+    #[pyo3(from_py_with = argument::opponents)] opponents: Text,
+    #[pyo3(from_py_with = argument::approach)] approach: Text,
+    #[pyo3(from_py_with = argument::seed)] seed: u64,
+    #[pyo3(from_py_with = argument::profile)] profile: Text,
+    #[pyo3(from_py_with = argument::robots)] robots: usize,
+    library: Option<&Bound<'py, PyAny>>,
+    settings: Option<&Bound<'py, PyAny>>,
+    #[pyo3(from_py_with = argument::positioning)] positioning: Text,
+    #[pyo3(from_py_with = argument::retrievers)] retrievers: Option<usize>,
+    #[pyo3(from_py_with = argument::loss)] loss: f32,
+    #[pyo3(from_py_with = argument::symmetry)] symmetry: bool,
+    #[pyo3(from_py_with = argument::case_opponents)] case_opponents: bool,
+    #[pyo3(from_py_with = argument::opponents_play_on)] opponents_play_on: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let scenario = Scenario::from_label(scenario)
-        .ok_or_else(|| unknown("scenario", scenario, "1, 2, 3, 4 or random"))?;
+    let scenario = Scenario::from_label(&scenario)
+        .ok_or_else(|| unknown("scenario", &scenario, "1, 2, 3, 4 or random"))?;
     let opponents =
-        Configuration::from_label(opponents).ok_or_else(|| unknown("opponents", opponents, "dg or 2d"))?;
-    let approach = arena::approach_from_label(approach).ok_or_else(|| {
-        unknown("approach", approach, &arena::APPROACHES.map(arena::approach_label).join(" or "))
+        Configuration::from_label(&opponents).ok_or_else(|| unknown("opponents", &opponents, "dg or 2d"))?;
+    let approach = arena::approach_from_label(&approach).ok_or_else(|| {
+        unknown("approach", &approach, &arena::APPROACHES.map(arena::approach_label).join(" or "))
     })?;
     let profile =
-        Profile::from_label(profile).ok_or_else(|| unknown("profile", profile, "simulated or robots"))?;
+        Profile::from_label(&profile).ok_or_else(|| unknown("profile", &profile, "simulated or robots"))?;
     let positioning = [Positioning::Dependent, Positioning::Independent]
         .into_iter()
-        .find(|known| arena::positioning_label(*known) == positioning)
-        .ok_or_else(|| unknown("positioning", positioning, "dependent or independent"))?;
+        .find(|known| arena::positioning_label(*known) == &*positioning)
+        .ok_or_else(|| unknown("positioning", &positioning, "dependent or independent"))?;
     let retrievers = retrievers.unwrap_or(robots);
     if !ROBOTS.contains(&robots) || !ROBOTS.contains(&retrievers) {
         return Err(refused("robots and retrievers: take a number from 1 to 4"));

@@ -10,6 +10,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import numpy as np
+
 import onetwo
 
 PROGRAM = os.environ["ONETWO"]
@@ -111,6 +113,44 @@ class Answers(unittest.TestCase):
                     f"error: {refusal(lambda: onetwo.Library(directory=directory))}\n",
                     program(*retrieve, "--library", str(directory), fails=True),
                 )
+
+
+class Numbers(unittest.TestCase):
+    def test_a_situation_may_hold_numpys_numbers_and_no_others(self):
+        expected = onetwo.retrieve({"ball": [-600, 10], "defending": "yellow", "teammates": {"1": [-700, 0]}, "opponents": []})
+        for ball in (np.array([-600, 10]), [np.int64(-600), np.int16(10)], (-600, 10), np.array([-600, 10], ">i4")):
+            problem = {"ball": ball, "defending": "yellow", "teammates": {np.int64(1): np.array([-700, 0])}, "opponents": []}
+            self.assertEqual(onetwo.retrieve(problem), expected)
+        good = {"ball": [-600, 10], "defending": "yellow", "teammates": {1: [-700, 0]}, "opponents": []}
+        endless = []
+        endless.append(endless)
+        for key, value in (
+            ("ball", [float("nan"), 0]),
+            ("ball", np.array([np.inf, 0.0])),
+            ("ball", object()),
+            ("ball", {1, 2}),
+            ("ball", b"xy"),
+            ("teammates", {(1, 2): [0, 0]}),
+            ("opponents", endless),
+            ("defending", 3),
+        ):
+            for ask in (onetwo.retrieve, onetwo.explain):
+                with self.subTest(key), self.assertRaisesRegex(ValueError, key):
+                    ask({**good, key: value})
+        for call in (
+            lambda: onetwo.retrieve(good, settings=[1]),
+            lambda: onetwo.retrieve(good, settings={"thr_c": None}),
+            lambda: onetwo.retrieve(good, library="four-legged"),
+            lambda: onetwo.Library(5),
+            lambda: onetwo.Library(directory=5),
+            lambda: onetwo.trial(seed=-1),
+            lambda: onetwo.trial(robots=2**70),
+            lambda: onetwo.trial(scenario=1),
+            lambda: onetwo.trial(symmetry="no"),
+            lambda: onetwo.trial(loss="none"),
+        ):
+            with self.assertRaises(ValueError):
+                call()
 
 
 class Trials(unittest.TestCase):

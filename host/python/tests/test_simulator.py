@@ -1,6 +1,8 @@
 """The simulator and its Gymnasium environment: what they promise of spaces, seeds, tasks and bad input."""
 
+import copy
 import math
+import pickle
 import subprocess
 import sys
 import unittest
@@ -193,6 +195,83 @@ class Environment(unittest.TestCase):
         code = "import sys, onetwo; onetwo.Simulator().step([0.0] * 5); print({'numpy', 'gymnasium'} & set(sys.modules))"
         printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
         self.assertEqual(printed.strip(), "set()")
+
+
+class Edges(unittest.TestCase):
+    def test_a_copy_and_a_pickle_go_on_bit_for_bit(self):
+        simulator = onetwo.Simulator(2, 1, seed=3)
+        played(simulator, 3, 20)
+        simulator.place_ball(1.0, 0.5, 2.0, -1.0)
+        simulator.place_robot(0, -1.0, 0.25, 1.0, opponent=True)
+        for other in (copy.copy(simulator), copy.deepcopy(simulator), pickle.loads(pickle.dumps(simulator))):
+            self.assertEqual(other.trace_hash, simulator.trace_hash)
+            there = copy.deepcopy(simulator)
+            for one in (there, other):
+                for _ in range(30):
+                    one.step([0.5, 0.1, -0.2, 1.0, 0.0] * 2, STAND)
+            self.assertEqual((other.trace_hash, other.state()), (there.trace_hash, there.state()))
+        env = onetwo.env.ScoreEnv(opponents=1)
+        env.reset(seed=5)
+        twin = pickle.loads(pickle.dumps(copy.deepcopy(env)))
+        action = env.action_space.sample()
+        self.assertEqual(env.step(action)[1], twin.step(action)[1])
+        library = onetwo.Library("division-b")
+        for other in (copy.deepcopy(library), pickle.loads(pickle.dumps(library))):
+            self.assertEqual(other.names, library.names)
+
+    def test_every_bad_value_is_a_value_error_with_its_name(self):
+        simulator = onetwo.Simulator(2)
+        big = 10**400
+        for name, call in (
+            ("own", lambda: onetwo.Simulator(own=-1)),
+            ("own", lambda: onetwo.Simulator(own="3")),
+            ("own", lambda: onetwo.Simulator(own=1.5)),
+            ("own", lambda: onetwo.Simulator(own=None)),
+            ("opponents", lambda: onetwo.Simulator(opponents=big)),
+            ("period_ms", lambda: onetwo.Simulator(period_ms=2**32)),
+            ("time_limit_s", lambda: onetwo.Simulator(time_limit_s="long")),
+            ("time_limit_s", lambda: onetwo.Simulator(time_limit_s=math.nan)),
+            ("time_limit_s", lambda: onetwo.Simulator(time_limit_s=big)),
+            ("league", lambda: onetwo.Simulator(league=5)),
+            ("seed", lambda: onetwo.Simulator(seed=np.int64(-1))),
+            ("seed", lambda: simulator.reset(2**64)),
+            ("seed", lambda: simulator.reset(1.0)),
+            ("index", lambda: simulator.place_robot(-1, 0, 0)),
+            ("heading", lambda: simulator.place_robot(0, 0, 0, math.inf)),
+            ("opponent", lambda: simulator.place_robot(0, 0, 0, opponent="yes")),
+            ("x", lambda: simulator.place_ball(1e300, 0)),
+            ("vy", lambda: simulator.place_ball(0, 0, 0, np.float64("nan"))),
+            ("actions", lambda: simulator.step("stand")),
+            ("actions", lambda: simulator.step(np.zeros(9, ">f4"))),
+            ("actions", lambda: simulator.step(np.full(10, np.nan))),
+            ("opponent_actions", lambda: simulator.step([0.0] * 10, [0.0] * 5)),
+            ("into", lambda: simulator.observe(np.zeros(21, ">f4"))),
+            ("into", lambda: simulator.observe(np.zeros(21, np.float64))),
+            ("render", lambda: onetwo.env.ScoreEnv().render()),
+            ("render_mode", lambda: onetwo.env.ScoreEnv(render_mode="rgb_array")),
+        ):
+            with self.subTest(name), self.assertRaisesRegex(ValueError, name):
+                call()
+
+    def test_numbers_of_numpy_are_numbers(self):
+        simulator = onetwo.Simulator(np.int8(1), np.uint64(1), period_ms=np.int32(20), time_limit_s=np.float32(3), seed=np.uint64(7))
+        simulator.place_robot(np.int16(0), np.float32(0.5), np.int64(1), np.float16(0))
+        orders = [0.25, -0.5, 0.75, 0.0, 1.0]
+        hashes = set()
+        for kind in ("<f4", ">f4", ">f8", np.float16):
+            one = copy.deepcopy(simulator)
+            one.step(np.array(orders, kind))
+            hashes.add(one.trace_hash)
+        self.assertEqual(len(hashes), 1)
+
+    def test_the_environment_is_found_by_its_name_and_renders_a_line(self):
+        code = "import gymnasium; print(gymnasium.make('onetwo/Score-v0').unwrapped.metadata['render_modes'])"
+        printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+        self.assertEqual(printed.strip(), "['ansi']")
+        env = gymnasium.make("onetwo/Score-v0", opponents=1, render_mode="ansi")
+        env.reset(seed=1)
+        line = env.render()
+        self.assertRegex(line, r"^0\.00 s; ball \(.*\); own 0 \(.*\); opponents 0 \(.*\)$")
 
 
 if __name__ == "__main__":

@@ -130,7 +130,7 @@ impl Recorder {
         }
         if let Some(files) = self.files.take() {
             files.log.close()?;
-            files.trace.into_inner().finish()?.flush()?;
+            files.trace.finish()?.finish()?.flush()?;
         }
         Ok(())
     }

@@ -5,6 +5,9 @@
 //! "ONETWO_TRACE" | version u32 | length u32, header: JSON in UTF-8 | records
 //! record: time u64, µs | host u8 | kind u8 | length u32 | bytes            all integers little endian
 //! ```
+//! Kind 255 is no record: its 4 bytes are the CRC-32 of all before it, magic and header included. One is written at
+//! each flush and at the end; a trace that does not end with one is cut. Versions 1 and 2 have none.
+//!
 //! Bytes of a referee's record: the sender's address ([`SenderAddress::to_bytes`], 18 bytes), then the
 //! datagram. Version 1 had no address there; its packets are read as [`SenderAddress::INTERNAL`]'s. A record
 //! of kind [`RecordKind::Lost`] means that the recorder could not keep up from then on.
@@ -17,17 +20,24 @@
 use std::fmt;
 use std::io::{self, Read, Write};
 
+use flate2::Crc;
 use protocol::Instant;
 
 use crate::referee::SenderAddress;
 
 const MAGIC: &[u8; 12] = b"ONETWO_TRACE";
 /// The version of the format.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 /// The oldest version that is read.
 const OLDEST_VERSION: u32 = 1;
 /// Version 1 did not store a referee's address.
 const SENDER_SINCE_VERSION: u32 = 2;
+/// Version 2 had no checksums.
+const CHECKSUM_SINCE_VERSION: u32 = 3;
+/// Byte of a checksum, in the place of a record's kind.
+const CHECKSUM: u8 = 255;
+/// Bytes before those of a record: time, host, kind and length.
+const RECORD_HEAD: usize = 14;
 /// The longest record, bytes: a datagram and its sender.
 pub const RECORD_LEN_MAX: usize = 65_536 + SenderAddress::LEN;
 /// The longest header, bytes.
@@ -91,16 +101,19 @@ pub struct Record {
 #[derive(Debug)]
 pub struct Writer<W: Write> {
     out: W,
+    /// Of all that was written.
+    sum: Crc,
 }
 
 impl<W: Write> Writer<W> {
     /// Starts with the header, which is JSON.
-    pub fn new(mut out: W, header: &str) -> io::Result<Self> {
-        out.write_all(MAGIC)?;
-        out.write_all(&VERSION.to_le_bytes())?;
-        out.write_all(&len(header.as_bytes())?.to_le_bytes())?;
-        out.write_all(header.as_bytes())?;
-        Ok(Self { out })
+    pub fn new(out: W, header: &str) -> io::Result<Self> {
+        let mut writer = Self { out, sum: Crc::new() };
+        writer.put(MAGIC)?;
+        writer.put(&VERSION.to_le_bytes())?;
+        writer.put(&len(header.as_bytes())?.to_le_bytes())?;
+        writer.put(header.as_bytes())?;
+        Ok(writer)
     }
 
     /// Adds a record at the end; fails where it exceeds [`RECORD_LEN_MAX`].
@@ -109,24 +122,42 @@ impl<W: Write> Writer<W> {
         if total > RECORD_LEN_MAX {
             return Err(io::Error::other(format!("a record of {total} bytes; at most {RECORD_LEN_MAX} fit")));
         }
-        let mut head = [0; 14];
-        head[..8].copy_from_slice(&at.0.to_le_bytes());
-        head[8] = host;
-        head[9] = kind as u8;
-        head[10..].copy_from_slice(&(total as u32).to_le_bytes());
-        self.out.write_all(&head)?;
-        bytes.iter().try_for_each(|part| self.out.write_all(part))
+        self.put(&record_head(at, host, kind as u8, total as u32))?;
+        bytes.iter().try_for_each(|part| self.put(part))
     }
 
-    /// Writes what is buffered: a reader of the file then finds every record so far.
+    /// Writes a checksum and what is buffered: a reader of the file then finds every record so far.
     pub fn flush(&mut self) -> io::Result<()> {
+        self.write_checksum()?;
         self.out.flush()
     }
 
-    /// Returns the underlying writer.
-    pub fn into_inner(self) -> W {
-        self.out
+    /// Ends the trace; returns the underlying writer.
+    pub fn finish(mut self) -> io::Result<W> {
+        self.write_checksum()?;
+        Ok(self.out)
     }
+
+    fn write_checksum(&mut self) -> io::Result<()> {
+        let sum = self.sum.sum().to_le_bytes();
+        self.put(&record_head(Instant(0), 0, CHECKSUM, sum.len() as u32))?;
+        self.put(&sum)
+    }
+
+    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.sum.update(bytes);
+        self.out.write_all(bytes)
+    }
+}
+
+/// The bytes before a record's own.
+fn record_head(at: Instant, host: u8, kind: u8, length: u32) -> [u8; RECORD_HEAD] {
+    let mut head = [0; RECORD_HEAD];
+    head[..8].copy_from_slice(&at.0.to_le_bytes());
+    head[8] = host;
+    head[9] = kind;
+    head[10..].copy_from_slice(&length.to_le_bytes());
+    head
 }
 
 fn len(bytes: &[u8]) -> io::Result<u32> {
@@ -145,6 +176,10 @@ pub struct Reader<R: Read> {
     at: u64,
     /// Time of the last one.
     last: Option<Instant>,
+    /// Of all that was read.
+    sum: Crc,
+    /// Start of what the next checksum is for; `None` where there is nothing since the last one.
+    unsummed: Option<u64>,
 }
 
 /// End of a trace.
@@ -252,9 +287,18 @@ impl<R: Read> Reader<R> {
         }
         let mut header = vec![0; length];
         from.read_exact(&mut header)?;
+        let mut sum = Crc::new();
+        for bytes in [&magic[..], &version.to_le_bytes(), &label, &header] {
+            sum.update(bytes);
+        }
         let header = String::from_utf8(header).map_err(|_| TraceError::Header)?;
         let at = (MAGIC.len() + 2 * label.len() + header.len()) as u64;
-        Ok(Self { from, version, header, end: None, at, last: None })
+        Ok(Self { from, version, header, end: None, at, last: None, sum, unsummed: Some(0) })
+    }
+
+    /// Whether referees' records name their senders.
+    pub const fn has_senders(&self) -> bool {
+        self.version >= SENDER_SINCE_VERSION
     }
 
     /// The header, as JSON.
@@ -267,7 +311,8 @@ impl<R: Read> Reader<R> {
         self.end.as_ref()
     }
 
-    fn read(&mut self) -> Result<Record, TraceEnd> {
+    /// The next record; `None` of a checksum.
+    fn read(&mut self) -> Result<Option<Record>, TraceEnd> {
         let (begin, last) = (self.at, self.last);
         let cut = || TraceEnd::Cut { at: begin, last };
         let broken = |what: String| TraceEnd::Broken { at: begin, what };
@@ -276,14 +321,32 @@ impl<R: Read> Reader<R> {
             io::ErrorKind::UnexpectedEof => cut(),
             _ => broken(error.to_string()),
         };
-        let mut head = [0; 14];
+        let mut head = [0; RECORD_HEAD];
         match fill(&mut self.from, &mut head).map_err(failed)? {
+            0 if self.has_checksums() && self.unsummed.is_some() => return Err(cut()),
             0 => return Err(TraceEnd::Whole),
             got if got < head.len() => return Err(cut()),
             _ => {}
         }
         let [t0, t1, t2, t3, t4, t5, t6, t7, host, kind, l0, l1, l2, l3] = head;
         let length = u32::from_le_bytes([l0, l1, l2, l3]) as usize;
+        if kind == CHECKSUM && self.has_checksums() {
+            let mut sum = [0; 4];
+            let got = fill(&mut self.from, &mut sum).map_err(failed)?;
+            if length == sum.len() && got < length {
+                return Err(cut());
+            }
+            let is_own = head == record_head(Instant(0), 0, CHECKSUM, sum.len() as u32);
+            if !is_own || u32::from_le_bytes(sum) != self.sum.sum() {
+                let since = self.unsummed.unwrap_or(begin);
+                return Err(broken(format!("the bytes from {since} on are not those that were written")));
+            }
+            self.sum.update(&head);
+            self.sum.update(&sum);
+            self.at += (head.len() + length) as u64;
+            self.unsummed = None;
+            return Ok(None);
+        }
         let kind =
             RecordKind::from_byte(kind).ok_or_else(|| broken(format!("no record is of kind {kind}")))?;
         if length > RECORD_LEN_MAX {
@@ -294,15 +357,22 @@ impl<R: Read> Reader<R> {
             return Err(cut());
         }
         let at = Instant(u64::from_le_bytes([t0, t1, t2, t3, t4, t5, t6, t7]));
+        self.sum.update(&head);
+        self.sum.update(&bytes);
+        self.unsummed.get_or_insert(begin);
         self.at += (head.len() + length) as u64;
         self.last = Some(at);
         let from = match kind {
             RecordKind::Lost => return Err(TraceEnd::Lost { at }),
-            RecordKind::Referee if self.version >= SENDER_SINCE_VERSION => take_sender(&mut bytes)
+            RecordKind::Referee if self.has_senders() => take_sender(&mut bytes)
                 .ok_or_else(|| broken(format!("a referee's record of {length} bytes has no sender")))?,
             _ => SenderAddress::INTERNAL,
         };
-        Ok(Record { at, host, kind, from, bytes })
+        Ok(Some(Record { at, host, kind, from, bytes }))
+    }
+
+    const fn has_checksums(&self) -> bool {
+        self.version >= CHECKSUM_SINCE_VERSION
     }
 }
 
@@ -332,10 +402,14 @@ impl<R: Read> Iterator for Reader<R> {
     type Item = Record;
 
     fn next(&mut self) -> Option<Record> {
-        if self.end.is_some() {
-            return None;
+        while self.end.is_none() {
+            match self.read() {
+                Ok(Some(record)) => return Some(record),
+                Ok(None) => {}
+                Err(end) => self.end = Some(end),
+            }
         }
-        self.read().map_err(|end| self.end = Some(end)).ok()
+        None
     }
 }
 

@@ -1,7 +1,6 @@
 //! `tuning`: the team's parameters while robots play: changes from the page, kept until they are saved to the
 //! team's file, and what was learned, which is saved at the end.
 
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -55,7 +54,7 @@ impl Tuning {
             text =
                 change.write_into(&text).map_err(|refused| failed(io::Error::other(refused.to_string())))?;
         }
-        replace(file, &text).map_err(failed)?;
+        foreign::replace(file, text.as_bytes()).map_err(failed)?;
         let number = self.changes.len();
         self.changes.clear();
         Ok(format!("{number} changed parameters are in {}", printable_path(file)))
@@ -70,7 +69,7 @@ pub(super) fn keep_learned(path: &Path, learned: &Learned) -> String {
             Err(_) if !path.exists() => String::new(),
             Err(error) => return Err(io::Error::other(error.to_string())),
         };
-        replace(path, &crate::learned::kept(&before, learned))
+        foreign::replace(path, crate::learned::kept(&before, learned).as_bytes())
     };
     match write() {
         Ok(()) => format!("learned  what is known of kickers and ball is in {}", printable_path(path)),
@@ -78,15 +77,10 @@ pub(super) fn keep_learned(path: &Path, learned: &Learned) -> String {
     }
 }
 
-/// Replaces a file's text; a crash while writing leaves the file as it was.
-fn replace(file: &Path, text: &str) -> io::Result<()> {
-    let beside = file.with_extension("new");
-    fs::write(&beside, text)?;
-    fs::rename(&beside, file)
-}
-
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

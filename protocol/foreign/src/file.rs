@@ -1,7 +1,7 @@
 //! `file`: files of untrusted sources, read up to a limit. Sizes in bytes.
 
-use std::fs::{self, File, FileType};
-use std::io::{self, ErrorKind, Read};
+use std::fs::{self, File, FileType, Permissions};
+use std::io::{self, ErrorKind, Read, Write as _};
 use std::path::Path;
 
 /// Opens a regular file for streaming; any other kind of file is refused.
@@ -38,6 +38,41 @@ pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
         let at = error.utf8_error().valid_up_to();
         io::Error::new(ErrorKind::InvalidData, format!("the file is not UTF-8 from byte {at} on"))
     })
+}
+
+/// Replaces a regular file's contents, as a whole or not at all: a crash leaves the old file. A link stays a
+/// link, what it leads to is replaced; the file's mode stays. A file that is not there is created.
+pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let (target, mode) = match fs::metadata(path) {
+        Ok(there) => {
+            regular(there.file_type())?;
+            (fs::canonicalize(path)?, Some(there.permissions()))
+        }
+        // A link to a file that is not there yet.
+        Err(error) if error.kind() == ErrorKind::NotFound => match fs::read_link(path) {
+            Ok(to) => (path.parent().unwrap_or(Path::new("")).join(to), None),
+            Err(_) => (path.to_owned(), None),
+        },
+        Err(error) => return Err(error),
+    };
+    let mut beside = target.as_os_str().to_owned();
+    beside.push(".new");
+    let beside = Path::new(&beside);
+    let replaced = write_new(beside, mode, bytes).and_then(|()| fs::rename(beside, &target));
+    if replaced.is_err() {
+        let _ = fs::remove_file(beside);
+    }
+    replaced
+}
+
+fn write_new(path: &Path, mode: Option<Permissions>, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create(path)?;
+    // First: the contents may be for its owner alone.
+    if let Some(mode) = mode {
+        file.set_permissions(mode)?;
+    }
+    file.write_all(bytes)?;
+    file.sync_all()
 }
 
 fn regular(kind: FileType) -> io::Result<()> {
@@ -87,6 +122,38 @@ mod tests {
         assert!(read_text(&file, 8).unwrap_err().to_string().contains("byte 2"));
         fs::remove_file(&file).unwrap();
         assert_eq!(read(&file, 8).unwrap_err().kind(), ErrorKind::NotFound);
+    }
+
+    #[test]
+    fn a_replaced_file_is_new_as_a_whole_and_leaves_nothing_beside_it() {
+        let file = scratch("replaced");
+        for text in ["one", "two and more"] {
+            replace(&file, text.as_bytes()).unwrap();
+            assert_eq!(fs::read_to_string(&file).unwrap(), text);
+        }
+        assert!(replace(&std::env::temp_dir(), b"three").is_err());
+        assert!(!scratch("replaced.new").exists());
+        fs::remove_file(&file).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_replaced_file_keeps_its_mode_and_the_link_that_leads_to_it() {
+        use std::os::unix::fs::{PermissionsExt as _, symlink};
+        let directory = scratch("links");
+        fs::create_dir_all(directory.join("real")).unwrap();
+        let (file, link) = (directory.join("real/team.toml"), directory.join("team.toml"));
+        symlink("real/team.toml", &link).unwrap();
+        replace(&link, b"new").unwrap();
+        assert_eq!(fs::read(&file).unwrap(), b"new", "a link to nothing yet");
+        for mode in [0o600, 0o640, 0o644, 0o444] {
+            fs::set_permissions(&file, fs::Permissions::from_mode(mode)).unwrap();
+            replace(&link, format!("{mode:o}").as_bytes()).unwrap();
+            assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o7777, mode);
+            assert_eq!(fs::read_to_string(&file).unwrap(), format!("{mode:o}"));
+            assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        }
+        fs::remove_dir_all(directory).unwrap();
     }
 
     #[test]

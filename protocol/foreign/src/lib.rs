@@ -2,6 +2,7 @@
 //!
 //! - [`read`], [`read_text`] and [`open`] take regular files only: a device, pipe or socket may never end, or
 //!   may never start. What is read into memory is read up to a limit.
+//! - [`replace`] writes a file anew, as a whole or not at all; a link stays one, and the mode stays.
 //! - [`printable`] escapes what a terminal executes instead of displaying it: control characters, and the
 //!   marks that turn the direction of writing. [`Printable`] does the same to everything that is written
 //!   through it, line ends aside.
@@ -14,5 +15,5 @@
 mod file;
 mod text;
 
-pub use file::{open, read, read_from, read_text};
+pub use file::{open, read, read_from, read_text, replace};
 pub use text::{Printable, excerpt, printable, printable_path};

@@ -106,6 +106,14 @@ impl<'a> Image<'a> {
         Ok(Self { sections, symbols, soft_double, lines: lines_of(&file).map_err(ImageError::Dwarf)? })
     }
 
+    /// Whether the image has contents at one of `len` addresses from `address` on.
+    pub fn occupies(&self, address: u64, len: u64) -> bool {
+        let end = address.saturating_add(len);
+        self.sections
+            .iter()
+            .any(|section| section.address < end && address < section.address.saturating_add(section.size))
+    }
+
     /// The names of all its symbols.
     pub fn symbol_names(&self) -> impl Iterator<Item = &str> {
         self.symbols.iter().map(|symbol| symbol.name.as_str())

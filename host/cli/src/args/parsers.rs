@@ -9,7 +9,7 @@ use firmware_build::{Board, ImageBody, Program, boards};
 use hil_sim::small_size::network::RefereeKind;
 use host::config::Calibration;
 use host::strategy::Team;
-use protocol::RobotId;
+use protocol::{RobotId, TeamId};
 use rules::{Colour, League};
 use ssl::net::addresses;
 use study::store::Shard;
@@ -43,6 +43,15 @@ pub(crate) fn team(label: &str) -> Result<Team, String> {
 pub(crate) fn match_seconds(text: &str) -> Result<f64, String> {
     let seconds: f64 = text.parse().map_err(|_| "expected seconds, such as 600".to_owned())?;
     if (0.0..=36_000.0).contains(&seconds) { Ok(seconds) } else { Err("0 to 36000 seconds".to_owned()) }
+}
+
+/// Length of a match that firmware is measured in under QEMU, simulated s.
+pub(crate) fn measured_seconds(text: &str) -> Result<f64, String> {
+    let range = 0.1..=3600.0;
+    text.parse()
+        .ok()
+        .filter(|value| range.contains(value))
+        .ok_or_else(|| "expected 0.1 to 3600 seconds".to_owned())
 }
 
 /// Time on the clock after which a verb ends, s.
@@ -112,6 +121,13 @@ pub(crate) fn host_address(text: &str) -> Result<SocketAddr, String> {
 pub(crate) fn robot_id(text: &str) -> Result<RobotId, String> {
     let number: u8 = text.parse().map_err(|_| "expected a number from 0 to 15".to_owned())?;
     RobotId::try_from(number).map_err(|error| error.to_string())
+}
+
+/// A team's number on the radio.
+pub(crate) fn radio_team(text: &str) -> Result<TeamId, String> {
+    let teams = [Colour::Yellow, Colour::Blue].map(TeamId::of);
+    let team = text.parse().ok().map(TeamId).filter(|team| teams.contains(team));
+    team.ok_or_else(|| "expected 1 (yellow) or 2 (blue)".to_owned())
 }
 
 /// The number of a robot whose first start is checked.
@@ -280,6 +296,14 @@ mod tests {
     #[test]
     fn only_what_can_be_simulated_is_taken() {
         assert!(field_speed("0").is_ok() && field_speed("-1").is_err() && field_speed("NaN").is_err());
+        for text in ["NaN", "0", "-1", "inf", "1e9", "soon"] {
+            assert!(measured_seconds(text).is_err(), "{text}");
+        }
+        assert_eq!(measured_seconds("5"), Ok(5.0));
+        assert!(radio_team("1").is_ok() && radio_team("2").is_ok());
+        for text in ["0", "3", "255", "256", "-1", "blue"] {
+            assert!(radio_team(text).is_err(), "{text}");
+        }
         assert!(cameras("4").is_ok() && cameras("3").is_err());
     }
 }

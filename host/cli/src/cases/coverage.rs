@@ -16,6 +16,7 @@ use serde_json::{Value, json};
 
 use super::survey::{SurveyArgs, Trial, class, percent, region};
 use crate::Failure;
+use crate::destination::{self, FileKind};
 use crate::output;
 use crate::picture::{self, SnapshotError};
 
@@ -54,6 +55,10 @@ enum Map {
 }
 
 pub(super) fn run(args: &CoverageArgs) -> Result<ExitCode, Failure> {
+    if let Some(file) = &args.out {
+        let kind = if picture::has_extension(file, "csv") { FileKind::Csv } else { picture::kind(file) };
+        destination::check(&[(file, kind)], &args.survey.inputs())?;
+    }
     let mut trial = Trial::open(&args.survey)?;
     if args.gaps.is_some() {
         trial.only_playable();
@@ -62,7 +67,11 @@ pub(super) fn run(args: &CoverageArgs) -> Result<ExitCode, Failure> {
     if let Some(file) = &args.out {
         let is_table = picture::has_extension(file, "csv");
         let text = if is_table { csv(&counters, cells) } else { drawn(&trial, &counters, cells, args.map) };
-        picture::write(file, &text)?;
+        if is_table {
+            destination::write(file, FileKind::Csv, text.as_bytes())?;
+        } else {
+            picture::write(file, &text)?;
+        }
     }
     let mut output = output::lines();
     let written = match (args.gaps, args.json) {

@@ -8,10 +8,10 @@ use std::process::ExitCode;
 use clap::Args;
 use feed::recording::{OpenLibrary, collect};
 use study::learning::{Change, RecordedDraft, draft};
-use study::store::EvaluationError;
 
 use crate::Failure;
 use crate::args::LibraryArgs;
+use crate::destination::{self, FileKind};
 use crate::library;
 use crate::output::{note, print_text, printable_path};
 use crate::progress::Progress;
@@ -37,6 +37,8 @@ pub(crate) struct DraftArgs {
 }
 
 pub(super) fn run(args: &DraftArgs) -> Result<ExitCode, Failure> {
+    destination::make_directory(&args.out)?;
+    let inputs: Vec<_> = args.library.directory.library.as_deref().into_iter().collect();
     let known = OpenLibrary::of(library::open(&args.library)?)?;
     let collected = collect(&args.from, &known, args.key_file.as_deref(), false, &Progress::open())?;
     let rules = &known.variant.files.rules;
@@ -48,7 +50,7 @@ pub(super) fn run(args: &DraftArgs) -> Result<ExitCode, Failure> {
             Ok(RecordedDraft { edit, retrieved }) => {
                 blocked += u32::from(!retrieved);
                 let Change::New(text) = &edit.change else { continue };
-                write(&args.out.join(format!("{}.toml", edit.case)), text)?;
+                write(&args.out.join(format!("{}.toml", edit.case)), text, &inputs)?;
                 written.insert(edit.case);
             }
             Err(why) => *refused.entry(why.to_string()).or_default() += 1,
@@ -56,7 +58,7 @@ pub(super) fn run(args: &DraftArgs) -> Result<ExitCode, Failure> {
     }
     let league = args.out.join("league.toml");
     if !written.is_empty() && !league.exists() {
-        write(&league, &rules.text)?;
+        write(&league, &rules.text, &inputs)?;
     }
     if blocked > 0 {
         note!("{blocked} are not retrieved where they were played: an opponent stood in the ball's path");
@@ -71,8 +73,10 @@ pub(super) fn run(args: &DraftArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn write(file: &Path, text: &str) -> Result<(), Failure> {
-    let made = file.parent().map_or(Ok(()), std::fs::create_dir_all);
-    let written = made.and_then(|()| std::fs::write(file, text));
-    written.map_err(|error| EvaluationError::File { file: file.to_owned(), error }.into())
+fn write(file: &Path, text: &str, inputs: &[&Path]) -> Result<(), Failure> {
+    destination::check(&[(file, FileKind::Toml)], inputs)?;
+    if let Some(directory) = file.parent() {
+        destination::make_directory(directory)?;
+    }
+    Ok(destination::write(file, FileKind::Toml, text.as_bytes())?)
 }

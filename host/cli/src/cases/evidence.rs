@@ -7,10 +7,10 @@ use std::process::ExitCode;
 
 use clap::Args;
 use feed::recording::{OpenLibrary, collect};
-use study::store::EvaluationError;
 
 use crate::Failure;
 use crate::args::LibraryArgs;
+use crate::destination::{self, FileKind};
 use crate::library;
 use crate::output::{print_text, printable_path};
 use crate::progress::Progress;
@@ -33,10 +33,12 @@ pub(crate) struct EvidenceArgs {
 }
 
 pub(super) fn run(args: &EvidenceArgs) -> Result<ExitCode, Failure> {
+    let inputs = args.files.iter().chain(&args.library.directory.library).chain(&args.key_file);
+    let inputs: Vec<_> = inputs.map(PathBuf::as_path).collect();
+    destination::check(&[(&args.out, FileKind::Json)], &inputs)?;
     let known = OpenLibrary::of(library::open(&args.library)?)?;
     let collected = collect(&args.files, &known, args.key_file.as_deref(), true, &Progress::open())?;
-    std::fs::write(&args.out, collected.to_jsonl())
-        .map_err(|error| EvaluationError::File { file: args.out.clone(), error })?;
+    destination::write(&args.out, FileKind::Json, collected.to_jsonl().as_bytes())?;
     let of_cases = || collected.evidence.0.iter().filter(|(key, _)| !key.case.is_empty());
     let plays: u64 = of_cases().map(|(_, counts)| counts.plays).sum();
     let to_goal: u64 = of_cases().map(|(_, counts)| counts.to_goal).sum();

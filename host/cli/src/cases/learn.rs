@@ -12,10 +12,11 @@ use feed::refusals;
 use study::learning::{
     JournalPlayer, Kind, LearnError, LearnSettings, Learned, Worlds, learn, learn_matches,
 };
-use study::store::{EvaluationError, Shard};
+use study::store::Shard;
 
 use crate::Failure;
 use crate::args::{LibraryArgs, VERSION, parsers};
+use crate::destination::{self, DestinationError, FileKind};
 use crate::library;
 use crate::output::print_text;
 use crate::progress::Progress;
@@ -78,6 +79,7 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
     if !matches {
         known.handle.check_field_of_trials()?;
     }
+    check_outputs(args, &known.variant.files.league)?;
     let budget = args.budget.unwrap_or(if matches { SCENES } else { TRIALS });
     let files = known.variant.files.clone();
     let earlier = collect(&args.from, &known, None, true, &Progress::open())?;
@@ -102,7 +104,7 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
         "program": VERSION, "settings": settings, "library": format!("{:016x}", start.hash),
         "world": hil_sim::world_hash(), "evidence": hash.to_string(),
     });
-    make(&args.out)?;
+    destination::make_directory(&args.out)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
     let pool = pool.map_err(Failure::Threads)?;
     let bar = Progress::of(budget, if matches { "scenes" } else { "trials" });
@@ -139,36 +141,43 @@ const SCENES: u64 = 10_000;
 /// Time without a match of a shard after which it counts as absent: several whole matches.
 const PATIENCE: Duration = Duration::from_mins(1);
 
+/// Refuses a directory in which something else would be overwritten.
+fn check_outputs(args: &LearnArgs, league: &str) -> Result<(), DestinationError> {
+    let inputs = args.from.iter().chain(&args.library.directory.library);
+    let inputs: Vec<_> = inputs.map(PathBuf::as_path).collect();
+    let files = [EVIDENCE, REPORT, PAGE].map(|(name, kind)| (args.out.join(name), kind));
+    let files = files.each_ref().map(|(file, kind)| (file.as_path(), *kind));
+    destination::check(&files, &inputs)?;
+    destination::check_library(&args.out.join(league), &inputs)
+}
+
+const EVIDENCE: (&str, FileKind) = ("evidence.jsonl", FileKind::Json);
+const REPORT: (&str, FileKind) = ("report.json", FileKind::Json);
+const PAGE: (&str, FileKind) = ("report.html", FileKind::Html);
+
+/// Writes a file of that name and kind into the directory.
+fn put(out: &Path, (name, kind): (&str, FileKind), text: &str) -> Result<(), DestinationError> {
+    destination::write(&out.join(name), kind, text.as_bytes())
+}
+
 /// Writes evidence, report and library.
 fn write(learned: &Learned, out: &Path) -> Result<(), Failure> {
-    let put = |name: &str, text: &str| {
-        let file = out.join(name);
-        std::fs::write(&file, text).map_err(|error| Failure::from(EvaluationError::File { file, error }))
-    };
-    put("evidence.jsonl", &learned.evidence.to_jsonl())?;
-    put("report.json", &format!("{:#}\n", study::learning::json(learned)))?;
-    put("report.html", &study::learning::html(learned))?;
+    put(out, EVIDENCE, &learned.evidence.to_jsonl())?;
+    put(out, REPORT, &format!("{:#}\n", study::learning::json(learned)))?;
+    put(out, PAGE, &study::learning::html(learned))?;
     let library = &learned.end.files;
     let directory = out.join(&library.league);
-    if directory.exists() {
-        let failed = |error| EvaluationError::File { file: directory.clone(), error };
-        std::fs::remove_dir_all(&directory).map_err(failed)?;
-    }
-    make(&directory)?;
-    put(&format!("{}/league.toml", library.league), &library.rules.text)?;
+    destination::clear_library(&directory)?;
+    destination::make_directory(&directory)?;
+    put(out, (&format!("{}/league.toml", library.league), FileKind::Toml), &library.rules.text)?;
     for file in &library.cases {
         let path = directory.join(format!("{}.toml", file.name));
         if let Some(region) = path.parent() {
-            make(region)?;
+            destination::make_directory(region)?;
         }
-        put(&format!("{}/{}.toml", library.league, file.name), &file.text)?;
+        put(out, (&format!("{}/{}.toml", library.league, file.name), FileKind::Toml), &file.text)?;
     }
     Ok(())
-}
-
-fn make(directory: &Path) -> Result<(), Failure> {
-    let made = std::fs::create_dir_all(directory);
-    made.map_err(|error| EvaluationError::File { file: directory.to_owned(), error }.into())
 }
 
 fn kind(label: &str) -> Result<Kind, String> {

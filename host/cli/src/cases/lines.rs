@@ -30,7 +30,8 @@ pub(crate) fn for_each_problem<W: Write>(
         if line.iter().all(u8::is_ascii_whitespace) {
             continue;
         }
-        let problem = problem_in(&line).map_err(|malformed| format!("line {number}: {malformed}"));
+        let line = if number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&line) } else { &line[..] };
+        let problem = problem_in(line).map_err(|malformed| format!("line {number}: {malformed}"));
         answer(output, number, problem).map_err(Failure::Output)?;
     }
     output.flush().map_err(Failure::Output)
@@ -57,6 +58,8 @@ fn problem_in(line: &[u8]) -> Result<Problem, Malformed> {
     problem::parse(text)
 }
 
+/// What some editors put before the first line.
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 /// Longest line, bytes: a problem of 11 + 11 robots needs 500; the remainder is for blanks. The bound keeps
 /// an endless line from filling the memory.
 pub(crate) const LINE_MAX: usize = 65_536;
@@ -89,6 +92,7 @@ mod tests {
     #[test]
     fn lines_may_end_as_on_windows_and_the_last_need_not_end() {
         assert_eq!(answers(format!("{GOOD}\r\n{GOOD}").as_bytes()), ["ok", "ok"]);
+        assert_eq!(answers(format!("\u{feff}{GOOD}\r\n{GOOD}").as_bytes()), ["ok", "ok"]);
         assert!(answers(b"").is_empty());
     }
 

@@ -2,8 +2,7 @@
 //! passes `cases check` and is retrieved from its problem; the parts of the problem that it leaves out are
 //! reported on stderr.
 
-use std::fs::OpenOptions;
-use std::io::{self, Read, Write, stdin};
+use std::io::{self, Read, stdin};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -17,6 +16,7 @@ use thiserror::Error;
 use super::lines::LINE_MAX;
 use crate::Failure;
 use crate::args::LibraryArgs;
+use crate::destination::{self, DestinationError, FileKind};
 use crate::output::{note, print_text, printable_path};
 
 /// Arguments of `cases new`.
@@ -108,20 +108,16 @@ fn read(from: &Path) -> Result<Problem, DraftError> {
 }
 
 fn write(file: &Path, force: bool, text: &str) -> Result<(), DraftError> {
-    let mut options = OpenOptions::new();
-    options.write(true);
-    let opened = if force {
-        options.create(true).truncate(true).open(file)
-    } else {
-        options.create_new(true).open(file)
-    };
-    opened
-        .and_then(|mut out| out.write_all(text.as_bytes()))
-        .map_err(|error| DraftError::Write { file: file.to_owned(), error })
+    if force {
+        return Ok(destination::write(file, FileKind::Toml, text.as_bytes())?);
+    }
+    destination::write_new(file, text).map_err(|error| DraftError::Write { file: file.to_owned(), error })
 }
 
 #[derive(Debug, Error)]
 enum DraftError {
+    #[error(transparent)]
+    Destination(#[from] DestinationError),
     #[error("the problem has no teammate, and a case needs one; add who plays the ball to \"teammates\"")]
     NoTeammate,
     #[error(

@@ -14,6 +14,7 @@ use super::lines::LINE_MAX;
 use super::show::{find, unknown};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
+use crate::destination;
 use crate::output::print_text;
 use crate::picture::{self, SnapshotError, Unwritten};
 
@@ -71,6 +72,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     if let Some(file) = &args.out {
         picture::named(&file.to_string_lossy(), &KINDS)
             .map_err(|error| Unwritten { file: file.clone(), error })?;
+        let read = args.problem.as_ref().map(Path::new).filter(|file| file.exists());
+        destination::check(&[(file, picture::kind(file))], read.as_slice())?;
         picture::write(file, &svg)?;
     } else {
         print_text(&svg)?;
@@ -114,6 +117,9 @@ fn one(args: &RenderArgs, library_handle: &LibraryHandle) -> Result<String, Fail
 /// Every authored case: a file each, all on one page, or both.
 fn every(args: &RenderArgs, library_handle: &LibraryHandle) -> Result<ExitCode, Failure> {
     let base = library_handle.base();
+    if base.is_empty() {
+        return Err(NoCase::EmptyLibrary(library_handle.league().to_owned()).into());
+    }
     let authored: Vec<_> = base.cases().filter(|case| case.symmetry() == Symmetry::Identity).collect();
     let intents: Vec<_> =
         authored.iter().map(|case| library_handle.intent(case.id()).unwrap_or_default()).collect();
@@ -133,8 +139,7 @@ fn every(args: &RenderArgs, library_handle: &LibraryHandle) -> Result<ExitCode, 
         for picture in &pictures {
             let file = directory.join(format!("{}.svg", picture.name));
             if let Some(directory) = file.parent() {
-                std::fs::create_dir_all(directory)
-                    .map_err(|error| Unwritten { file: file.clone(), error: SnapshotError::Write(error) })?;
+                destination::make_directory(directory)?;
             }
             picture::write(&file, &case_picture(picture))?;
         }
@@ -169,7 +174,7 @@ fn read(argument: &str) -> Result<Problem, Failure> {
     if text.len() > LINE_MAX {
         return Err(ProblemError::TooLong(LINE_MAX).into());
     }
-    Ok(problem::parse(text.trim()).map_err(ProblemError::Malformed)?)
+    Ok(problem::parse(text.trim_start_matches('\u{feff}').trim()).map_err(ProblemError::Malformed)?)
 }
 
 fn picture_file(text: &str) -> Result<PathBuf, SnapshotError> {

@@ -12,7 +12,7 @@ use casebase::{GoalEnd, Problem, Symmetry};
 use clap::{Args, value_parser};
 use rayon::prelude::*;
 
-use super::failure::{FromError, LineFault, NoCase, SurveyError};
+use super::failure::{FromError, LineFault, SurveyError};
 use super::lines::for_each_problem;
 use super::playable::Playable;
 use crate::Failure;
@@ -50,6 +50,13 @@ pub(crate) struct SurveyArgs {
     cell: Option<i32>,
 }
 
+impl SurveyArgs {
+    /// The files and directories that are read.
+    pub(crate) fn inputs(&self) -> Vec<&Path> {
+        self.from.iter().chain(&self.library.directory.library).map(PathBuf::as_path).collect()
+    }
+}
+
 /// An opened library and the problems it is tested with.
 #[derive(Debug)]
 pub(crate) struct Trial<'a> {
@@ -71,9 +78,6 @@ impl<'a> Trial<'a> {
     pub(crate) fn open(args: &'a SurveyArgs) -> Result<Self, Failure> {
         let chosen = args.settings.choose()?;
         let library_handle = crate::library::open(&args.library)?;
-        if library_handle.base().is_empty() {
-            return Err(NoCase::EmptyLibrary(library_handle.league().to_owned()).into());
-        }
         let source = match &args.from {
             Some(file) => Source::Recorded(recorded(file)?),
             None => Source::Drawn(sampler(&library_handle, args.seed)?),

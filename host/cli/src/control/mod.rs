@@ -8,8 +8,6 @@ mod operator;
 mod terminal;
 
 use std::ffi::OsString;
-use std::fs::File;
-use std::io::{self, Write as _};
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -26,6 +24,7 @@ use crate::Failure;
 use crate::args::page::PageArgs;
 use crate::args::parsers::{RobotIds, kick, robot_ids, seconds};
 use crate::args::{DirectoryArgs, SettingsArgs};
+use crate::destination::{self, FileKind, check_recording};
 use crate::library;
 use crate::output::{note, print_text, printable_path};
 use crate::robot_description::ensure_built_for;
@@ -157,9 +156,16 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::SUCCESS);
     }
     if let Some(path) = &args.init {
-        init(path, &config.to_toml()).map_err(|error| ControlError::Init(path.clone(), error))?;
+        destination::write_new(path, &config.to_toml())
+            .map_err(|error| ControlError::Init(path.clone(), error))?;
         note!("the team's settings are in {}", printable_path(path));
         return Ok(ExitCode::SUCCESS);
+    }
+    let inputs = [&args.config, &args.key_file, &args.learned, &args.cases.directory.library];
+    let inputs: Vec<_> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    check_recording(args.record.as_deref(), &inputs)?;
+    if let Some(learned) = &args.learned {
+        destination::check(&[(learned, FileKind::Toml)], args.key_file.as_deref().as_slice())?;
     }
     let by_default = Parameters::of(config.league).map_or(0, |parameters| parameters.robots);
     let robots = match &args.ids {
@@ -214,11 +220,6 @@ impl Cases {
                 .collect(),
         })
     }
-}
-
-/// Writes a new file; one that is there is kept.
-fn init(path: &Path, text: &str) -> io::Result<()> {
-    File::create_new(path)?.write_all(text.as_bytes())
 }
 
 /// A file of settings.

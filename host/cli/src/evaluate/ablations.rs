@@ -15,6 +15,7 @@ use super::report::{self, PageArgs};
 use super::work::{self, WorkArgs};
 use crate::Failure;
 use crate::args::LibraryArgs;
+use crate::destination;
 use crate::setup::reduction;
 
 /// Which arms, and how many trials.
@@ -43,7 +44,7 @@ pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
     let arms: Vec<Arm> = ARMS.iter().filter(wanted).copied().collect();
     let (directory, pool) = (args.work.directory(Shard::WHOLE)?, args.work.pool()?);
     let kept = directory.join("arms");
-    work::make(&kept)?;
+    destination::make_directory(&kept)?;
     let library = args.library.directory.library.as_ref();
     let library =
         library.map_or_else(|| args.library.league.clone(), |directory| directory.display().to_string());

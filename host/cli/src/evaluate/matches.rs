@@ -27,6 +27,7 @@ use super::work::{self, WorkArgs, write};
 use crate::Failure;
 use crate::args::parsers::{self, league, match_seconds};
 use crate::args::{DirectoryArgs, SettingsArgs, VERSION};
+use crate::destination::FileKind;
 use crate::library;
 
 /// Which matches, and the output.
@@ -178,10 +179,10 @@ impl MatchesArgs {
         let before = self.before(identity)?;
         let compared =
             before.map(|before| comparison_table(&compare_matches(&identity.plan, &before, rows)) + "\n");
-        write(&directory.join("matches.csv"), &made.csv)?;
-        write(&directory.join("matches.json"), &made.json()?)?;
+        write(&directory.join("matches.csv"), FileKind::Csv, &made.csv)?;
+        write(&directory.join("matches.json"), FileKind::Json, &made.json()?)?;
         for figure in made.figures("") {
-            write(&directory.join(&figure.name).with_extension("svg"), figure.svg.as_bytes())?;
+            write(&directory.join(&figure.name).with_extension("svg"), FileKind::Svg, figure.svg.as_bytes())?;
         }
         if let Some(file) = &self.markdown {
             let text_with = |beside: &str| made.text(beside, &self.section);

@@ -10,6 +10,7 @@ use study::store::{EvaluationError, Kept, Row, Shard, merge, read};
 use super::report::{self, ReportArgs};
 use super::work;
 use crate::Failure;
+use crate::destination;
 
 /// The shards to merge, and the output.
 #[derive(Debug, Args)]
@@ -30,7 +31,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
         kept.extend(shards(directory)?);
     }
     let (identity, rows) = merge(kept)?;
-    work::make(&args.out)?;
+    destination::make_directory(&args.out)?;
     let results = Results::new(identity, rows)?;
     work::finish(&results, &args.out)?;
     report::write(&results, &args.out, &args.report)?;

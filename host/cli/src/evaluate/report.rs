@@ -4,7 +4,6 @@
 //! Numbers come from the stored trials. The maps' trials are played again: they are bit-identical if this
 //! program played them, and left out, with a message on stderr, if another did.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -20,6 +19,7 @@ use study::store::{StoredExperiment, in_words, merge};
 use super::{merge as shards, work};
 use crate::Failure;
 use crate::args::{DirectoryArgs, LibraryArgs, NoSuchSetting, VERSION};
+use crate::destination;
 use crate::output::{note, print_text, printable_path};
 use crate::{picture, setup};
 
@@ -161,13 +161,13 @@ pub(super) fn insert(
     let text = report::between_markers(&text, task, name, &inserted)
         .map_err(|error| Failure::Markdown { file: file.to_owned(), error })?;
     let directory = file.with_extension("");
-    work::make(&directory)?;
+    destination::make_directory(&directory)?;
     for figure in figures {
         if inserted.contains(&format!("{beside}{}.svg", figure.name)) {
             picture::write(&directory.join(figure.name).with_extension("svg"), &figure.svg)?;
         }
     }
-    fs::write(file, text).map_err(|error| unwritten(file, error))
+    Ok(destination::replace(file, &text)?)
 }
 
 fn unwritten(file: &Path, error: std::io::Error) -> Failure {

@@ -16,6 +16,7 @@ use super::report::insert;
 use super::work::{self, write};
 use crate::Failure;
 use crate::args::parsers::league;
+use crate::destination::{self, FileKind};
 use crate::progress::Progress;
 
 /// Which scenes, and how they are printed.
@@ -65,6 +66,10 @@ pub(super) struct ScenesArgs {
 }
 
 pub(super) fn run(args: &ScenesArgs) -> Result<ExitCode, Failure> {
+    if let Some(file) = &args.csv {
+        let inputs: Vec<_> = args.markdown.as_deref().into_iter().collect();
+        destination::check(&[(file, FileKind::Csv)], &inputs)?;
+    }
     let plan = args.plan();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
     let pool = pool.map_err(Failure::Threads)?;
@@ -75,7 +80,7 @@ pub(super) fn run(args: &ScenesArgs) -> Result<ExitCode, Failure> {
     drop(line);
     let csv = to_csv(&rows).map_err(EvaluationError::from)?;
     if let Some(file) = &args.csv {
-        write(file, &csv)?;
+        write(file, FileKind::Csv, &csv)?;
     }
     let effects = scene_effects(&plan, &rows);
     if args.json {

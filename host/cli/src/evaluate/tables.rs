@@ -1,18 +1,23 @@
 //! `onetwo evaluate` alone: the trials behind the paper's Tables 1 to 6, by default as many as the paper's.
 
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use arena::Profile;
 use brain::Approach;
 use clap::Args;
 use hil_sim::{Configuration, Scenario};
-use study::evaluation::{EvaluationCell, EvaluationPlan};
-use study::store::Shard;
+use study::evaluation::{ARMS, EvaluationCell, EvaluationPlan, TrialRow, effects};
+use study::store::{Shard, merge};
 
+use super::merge::shards;
 use super::report::ReportArgs;
 use super::work::{self, WorkArgs};
 use crate::Failure;
 use crate::args::parsers::{self, approach, opponents, profile, scenario};
+use crate::destination;
+use crate::output::printable_path;
 use crate::setup::SetupArgs;
 
 /// Which trials, and how they are played.
@@ -46,6 +51,10 @@ pub(super) struct TablesArgs {
     /// by the robots only with `--profile robots`.
     #[arg(long)]
     random: bool,
+    /// Compare with the same trials that another program, library or setting played into this directory: the
+    /// differences trial by trial.
+    #[arg(long, value_name = "DIR", conflicts_with = "shard")]
+    compare: Option<PathBuf>,
     #[command(flatten)]
     report: ReportArgs,
     #[command(flatten)]
@@ -53,8 +62,48 @@ pub(super) struct TablesArgs {
 }
 
 pub(super) fn run(args: &TablesArgs) -> Result<ExitCode, Failure> {
-    work::run(args.plan()?, args.shard, &args.setup, &args.work, &args.report)
+    let plan = args.plan()?;
+    let Some(directory) = &args.compare else {
+        return work::run(plan, args.shard, &args.setup, &args.work, &args.report);
+    };
+    destination::check_directory(args.work.out(), directory)?;
+    // Before trials are played that cannot be compared.
+    let (identity, before) = merge(shards::<TrialRow>(directory)?)?;
+    if identity.plan != plan {
+        return Err(OtherTrials(directory.clone()).into());
+    }
+    let code = work::run(plan, args.shard, &args.setup, &args.work, &args.report)?;
+    let (_, now) = merge(shards::<TrialRow>(args.work.out())?)?;
+    work::print_text(&compared(directory, before, now))?;
+    Ok(code)
 }
+
+/// Case-based attackers' measures in both directories, over all cells.
+fn compared(directory: &Path, mut before: Vec<TrialRow>, mut now: Vec<TrialRow>) -> String {
+    for rows in [&mut before, &mut now] {
+        rows.retain(|row| row.approach != Approach::Reactive);
+    }
+    let effects = effects(&before, &[(ARMS[0], now)]);
+    let all: Vec<_> = effects.into_iter().filter(|effect| effect.scenario.is_none()).collect();
+    let Some(trials) = all.first().map(|effect| effect.trials) else {
+        return "nothing to compare: no trial of attackers with cases\n".to_owned();
+    };
+    let mut text = format!("against {}, {trials} pairs of trials with cases:\n", printable_path(directory));
+    for effect in all {
+        let p = effect.p_paired.map_or_else(|| "equal".to_owned(), |p| format!("p {p:.3}"));
+        let (measure, default, value, difference) =
+            (effect.measure, effect.default, effect.value, effect.difference);
+        let _ = writeln!(text, "  {measure:<10} {default:>8.2} -> {value:>8.2}  {difference:>+8.2}  {p}");
+    }
+    text
+}
+
+/// Trials of another plan cannot be compared in pairs.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the trials in {} are others: give the --trials, --seed and filters that they were played with", printable_path(.0)
+)]
+struct OtherTrials(PathBuf);
 
 impl TablesArgs {
     fn plan(&self) -> Result<EvaluationPlan, Failure> {

@@ -15,6 +15,7 @@ use study::store::{EvaluationError, RunProgress, Shard, StoredExperiment};
 use super::report::{self, ReportArgs};
 use crate::Failure;
 use crate::args::VERSION;
+use crate::destination::{self, FileKind};
 use crate::output;
 use crate::progress;
 use crate::setup::SetupArgs;
@@ -35,6 +36,11 @@ pub(super) struct WorkArgs {
 }
 
 impl WorkArgs {
+    /// The directory, as it was named.
+    pub(super) fn out(&self) -> &Path {
+        &self.out
+    }
+
     /// Threads to play on.
     pub(super) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.jobs.map_or(0, usize::from));
@@ -44,7 +50,7 @@ impl WorkArgs {
     /// The directory, created if missing; without earlier trials of that shard if `fresh` is set, and without
     /// those of any shard if it is the whole plan.
     pub(super) fn directory(&self, shard: Shard) -> Result<&Path, Failure> {
-        make(&self.out)?;
+        destination::make_directory(&self.out)?;
         if self.fresh {
             let failed = |error| EvaluationError::File { file: self.out.clone(), error };
             for entry in std::fs::read_dir(&self.out).map_err(failed)? {
@@ -68,12 +74,6 @@ impl WorkArgs {
 fn forget(file: &Path) -> Result<(), Failure> {
     let gone = std::fs::remove_file(file);
     gone.map_err(|error| EvaluationError::File { file: file.to_owned(), error }.into())
-}
-
-/// Creates a directory for results.
-pub(super) fn make(directory: &Path) -> Result<(), Failure> {
-    let made = std::fs::create_dir_all(directory);
-    made.map_err(|error| EvaluationError::File { file: directory.to_owned(), error }.into())
 }
 
 /// All settings that the trials of a plan depend on.
@@ -159,8 +159,8 @@ pub(super) fn finish(results: &Results, directory: &Path) -> Result<(), Failure>
 }
 
 /// Writes a file of results.
-pub(super) fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    std::fs::write(file, bytes).map_err(|error| EvaluationError::File { file: file.to_owned(), error }.into())
+pub(super) fn write(file: &Path, kind: FileKind, bytes: &[u8]) -> Result<(), Failure> {
+    Ok(destination::write(file, kind, bytes)?)
 }
 
 /// Prints on stdout.

@@ -2,16 +2,16 @@
 //! does when something breaks; written by `firmware report --write`.
 
 use std::fmt::Write as _;
-use std::fs;
 
 use clap::Args;
 use firmware_build::inspect::{Budget, Chip, STACK_BUDGET, STEP_BUDGET};
 use firmware_build::{Program, workspace_root};
 
-use super::at;
 use super::failsafe;
 use super::size::{Known, POOL_LEAST, Share};
 use crate::Failure;
+use crate::args::parsers;
+use crate::destination;
 use crate::output::print_text;
 
 /// Output of the report.
@@ -21,7 +21,7 @@ pub(crate) struct ReportArgs {
     #[arg(long)]
     write: bool,
     /// Simulated seconds of the match that robots on wheels are measured in.
-    #[arg(long, default_value_t = 60.0, value_name = "SECONDS")]
+    #[arg(long, default_value_t = 60.0, value_name = "SECONDS", value_parser = parsers::measured_seconds)]
     seconds: f64,
 }
 
@@ -36,7 +36,7 @@ pub(super) fn run(args: &ReportArgs) -> Result<(), Failure> {
         return print_text(&text);
     }
     let path = workspace_root().join(FILE);
-    fs::write(&path, text).map_err(at(&path))
+    Ok(destination::replace(&path, &text)?)
 }
 
 fn text(all: &[Known], seconds: f64) -> String {
@@ -140,6 +140,8 @@ none of these has been timed, and flash that is slower than the core costs more.
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

@@ -1,11 +1,14 @@
 //! `onetwo firmware run`: robots without hardware. The firmware that runs by its own clock, in QEMU's
 //! emulated board: one robot with its radio on a serial line, or a team's with theirs on UDP ([`mod@udp`]).
 
+mod emulator_log;
 mod udp;
 
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use firmware_build::{Install, MACHINE, Program, ensure_qemu};
@@ -39,7 +42,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIRECTORY", requires = "udp")]
     journal: Option<PathBuf>,
     /// End after this number of seconds.
-    #[arg(short, long, value_name = "SECONDS", value_parser = parsers::seconds, requires = "udp")]
+    #[arg(short, long, value_name = "SECONDS", value_parser = parsers::seconds)]
     duration: Option<f64>,
 }
 
@@ -58,9 +61,25 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let qemu = ensure_qemu(Install::ForUser)?;
     let mut command = Command::new(qemu);
     command.args(qemu_arguments(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
-    let status = command.status()?;
+    let mut child = command.stderr(Stdio::piped()).spawn()?;
+    emulator_log::follow(&mut child, "");
+    let end = args.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        if end.is_some_and(|end| Instant::now() >= end) {
+            child.kill()?;
+            child.wait()?;
+            return Ok(());
+        }
+        thread::sleep(CHECK_EVERY);
+    };
     if status.success() { Ok(()) } else { Err(FirmwareError::Ended(status).into()) }
 }
+
+/// The emulators are looked after this often.
+const CHECK_EVERY: Duration = Duration::from_millis(100);
 
 /// Longest file of a key page that is read, bytes: one sector of flash.
 const PAGE_FILE_LEN_MAX: u64 = 1 << 17;

@@ -12,6 +12,7 @@ use serde::Serialize;
 use super::measure::{Measured, measure};
 use super::{ImagesArgs, build, sizes_of};
 use crate::Failure;
+use crate::args::parsers;
 use crate::output::print_text;
 
 /// Output format of the sizes.
@@ -26,7 +27,7 @@ pub(crate) struct SizeArgs {
     #[arg(long)]
     still: bool,
     /// Simulated seconds of the match that robots on wheels are measured in.
-    #[arg(long, default_value_t = 5.0, value_name = "SECONDS", conflicts_with = "still")]
+    #[arg(long, default_value_t = 5.0, value_name = "SECONDS", value_parser = parsers::measured_seconds, conflicts_with = "still")]
     seconds: f64,
     /// Print as JSON.
     #[arg(long)]
@@ -61,6 +62,15 @@ impl Known {
             ram: share(ram, chip.ram),
             step: step.map(|(measured, steps)| share(u64::from(measured.worst) * steps, chip.clock)),
         }
+    }
+
+    /// The limits of its board's manifest, else those of a robot's firmware.
+    pub(super) fn budget(&self) -> Budget {
+        let firmware = match self.program {
+            Program::Board(board) | Program::More(board, _) => board.firmware.as_ref(),
+            _ => None,
+        };
+        firmware.map_or(Budget::IMAGE, |firmware| Budget { flash: firmware.flash, ram: firmware.ram })
     }
 
     /// Steps of its brain in a second (docs/architecture.md §2.3).
@@ -159,8 +169,8 @@ fn json(known: &Known, largest: usize) -> SizeJson<'_> {
         stack: known.measured.map(|measured| measured.stack),
         step: known.measured.map(|Measured { median, worst, steps, .. }| StepJson { median, worst, steps }),
         budget: BudgetJson {
-            flash: Budget::IMAGE.flash,
-            ram: Budget::IMAGE.ram,
+            flash: known.budget().flash,
+            ram: known.budget().ram,
             stack: STACK_BUDGET,
             step: STEP_BUDGET,
         },
@@ -175,19 +185,28 @@ fn json(known: &Known, largest: usize) -> SizeJson<'_> {
     }
 }
 
+/// The remark on a number that is over its budget.
+const fn over(is_over: bool) -> &'static str {
+    if is_over { "; over its budget" } else { "" }
+}
+
 fn write_sizes(known: &Known, largest: usize, text: &mut String) {
     let Known { program, sizes, measured } = known;
-    let Budget { flash, ram } = Budget::IMAGE;
+    let Budget { flash, ram } = known.budget();
+    let over_size = over(known.budget().check(sizes).is_err());
     let name = program.name();
     let _ = writeln!(
         text,
-        "{name}: {} of {flash} B flash, {} of {ram} B RAM before the stack",
+        "{name}: {} of {flash} B flash, {} of {ram} B RAM before the stack{over_size}",
         sizes.flash, sizes.ram
     );
     if let Some(Measured { stack, median, worst, steps }) = measured {
-        let _ = writeln!(text, "  deepest stack {stack} of {STACK_BUDGET} B");
-        let _ =
-            writeln!(text, "  worst of {steps} steps {worst} of {STEP_BUDGET} instructions, median {median}");
+        let _ = writeln!(text, "  deepest stack {stack} of {STACK_BUDGET} B{}", over(*stack > STACK_BUDGET));
+        let _ = writeln!(
+            text,
+            "  worst of {steps} steps {worst} of {STEP_BUDGET} instructions, median {median}{}",
+            over(*worst > STEP_BUDGET)
+        );
     }
     for chip in &Chip::ALL {
         let Share { name, flash, ram, step } = known.share(chip);

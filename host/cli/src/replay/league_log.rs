@@ -1,12 +1,12 @@
 //! `league_log`: replay of a league log file: one pass that counts, tracks, listens, and stops at a moment if
 //! one is asked for.
 //!
-//! Time is summed from the recorder's clock, from the file's first message on ([`LogClock`]): where that is
-//! set, ours goes on.
+//! Times are those of [`LogMessages`], from the file's first message on: where the recorder's clock is set,
+//! ours goes on.
 
 use std::process::ExitCode;
 
-use feed::recording::{LogClock, Moment, RecordedError, RefereeEventFinder, Score, in_file, is_meant};
+use feed::recording::{LogMessages, Moment, RecordedError, RefereeEventFinder, Score, in_file, is_meant};
 use host::referee::{Listener, SenderAddress};
 use host::tracking::{Tracker, VisionVerdict};
 use host::{Host, HostSettings, Input};
@@ -27,13 +27,13 @@ const VISION_GAP_S: f64 = 0.2;
 const REFEREE_GAP_S: f64 = 2.0;
 
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
-    let mut reader = ssl::log::open(&args.file).map_err(in_file(&args.file))?;
+    let mut messages = LogMessages::open(&args.file)?;
     let mut pass = Pass::new(args)?;
     let bar = Progress::open();
     let mut at_moment = None;
-    for (number, record) in (0_u64..).zip(reader.by_ref()) {
+    for (number, (at, record)) in (0_u64..).zip(messages.by_ref()) {
         bar.add(1);
-        if let Some(moment) = pass.read(number, &record) {
+        if let Some(moment) = pass.read(number, at, &record) {
             at_moment = Some(moment);
             break;
         }
@@ -43,17 +43,16 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         print_text(&if args.json { json_line(&moment)? } else { moment.text() })?;
         return Ok(ExitCode::SUCCESS);
     }
-    let damage = reader.end().filter(|end| !end.is_whole()).map(ToString::to_string);
-    let back_steps = reader.counts().back_steps;
     if args.at.is_some() || args.event.is_some() {
-        let missing = RecordedError::NotThere { asked: pass.asked(args), damage };
+        let missing = RecordedError::NotThere { asked: pass.asked(args), damage: messages.damage() };
         return Err(in_file(&args.file)(missing).into());
     }
-    let report = pass.finish(damage, back_steps);
+    let report = pass.finish(&messages);
     print_text(&if args.json { json_line(&report)? } else { report.text() })?;
     let nothing = report.messages.is_empty().then_some(RecordedError::Empty);
-    match report.damage.map(RecordedError::Damaged).or(nothing) {
-        // What could be read is printed above; the exit code reports that it is not the whole file.
+    let unused = (!report.unused.is_empty()).then(|| RecordedError::Unused(report.unused.join("; ")));
+    match report.damage.map(RecordedError::Damaged).or(nothing).or(unused) {
+        // What could be used is printed above; the exit code reports that it is not all.
         Some(error) => Err(in_file(&args.file)(error).into()),
         None => Ok(ExitCode::SUCCESS),
     }
@@ -62,8 +61,6 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
 struct Pass<'a> {
     args: &'a ReplayArgs,
     report: Report,
-    began_ns: Option<i64>,
-    clock: LogClock,
     now: Instant,
     tracker: Tracker,
     listener: Listener,
@@ -92,8 +89,6 @@ impl<'a> Pass<'a> {
         Ok(Self {
             args,
             report,
-            began_ns: None,
-            clock: LogClock::default(),
             now: Instant(0),
             tracker: Tracker::default(),
             listener: Listener::new(limits, None, Instant(0)),
@@ -104,9 +99,7 @@ impl<'a> Pass<'a> {
     }
 
     /// Reads the next message; returns a moment, if this is the requested one.
-    fn read(&mut self, number: u64, record: &Record) -> Option<Moment> {
-        self.began_ns.get_or_insert(record.timestamp_ns);
-        let later = self.clock.read(record.timestamp_ns);
+    fn read(&mut self, number: u64, later: Instant, record: &Record) -> Option<Moment> {
         // The moment between two messages is before the second.
         if let Some(at) = self.args.at
             && later.0 as f64 * 1e-6 > at
@@ -117,7 +110,13 @@ impl<'a> Pass<'a> {
         self.now = later;
         let at_s = self.seconds();
         self.count(record, at_s);
-        let packet = match record.decode() {
+        let decoded = match record.present() {
+            Some((kind, bytes)) => {
+                Packet::decode(kind, &bytes).map(|packet| packet.map(|packet| (packet, bytes)))
+            }
+            None => record.decode().map(|_| None),
+        };
+        let packet = match decoded {
             Ok(packet) => packet,
             Err(error) => {
                 self.report.undecodable += 1;
@@ -130,8 +129,8 @@ impl<'a> Pass<'a> {
             }
         };
         match packet {
-            Some(Packet::Vision(packet)) => {
-                self.report.sheet.vision(&packet);
+            Some((Packet::Vision(packet), bytes)) => {
+                self.report.field(&packet, at_s);
                 if let Some(image) = &packet.detection {
                     self.image(image.camera_id, at_s);
                 }
@@ -139,9 +138,9 @@ impl<'a> Pass<'a> {
                 if matches!(received, VisionVerdict::Newest | VisionVerdict::Restarted) {
                     self.look();
                 }
-                self.feed(Input::Vision(&record.payload));
+                self.feed(Input::Vision(&bytes));
             }
-            Some(Packet::Referee(packet)) => {
+            Some((Packet::Referee(packet), bytes)) => {
                 let ball = self.tracker.world(self.now).ball.map(|ball| ball.position);
                 // A log file does not record the sender of its packets.
                 self.listener.receive(&packet, SenderAddress::INTERNAL, self.now, ball);
@@ -149,7 +148,7 @@ impl<'a> Pass<'a> {
                 self.finder.read(&packet, at_s, &mut self.report.match_events);
                 self.report.sheet.referee(&packet);
                 self.report.score = Score { blue: packet.blue.score, yellow: packet.yellow.score };
-                self.feed(Input::Referee(&record.payload, SenderAddress::INTERNAL));
+                self.feed(Input::Referee(&bytes, SenderAddress::INTERNAL));
                 return self.asked_for(before);
             }
             _ => {}
@@ -248,14 +247,16 @@ impl<'a> Pass<'a> {
         self.now.0 as f64 * 1e-6
     }
 
-    fn finish(mut self, damage: Option<String>, back_steps: u64) -> Report {
+    fn finish(mut self, messages: &LogMessages) -> Report {
         self.report.take(self.tracker.counts(), self.listener.counts());
         self.report.span_s = self.seconds();
-        self.report.began_unix_s = self.began_ns.unwrap_or(0) as f64 * 1e-9;
-        self.report.damage = damage;
-        self.report.back_steps = back_steps;
-        self.report.clock_steps = self.clock.steps;
-        self.report.clock_steps_more = self.clock.steps_more;
+        self.report.began_unix_s = messages.began_unix_s();
+        self.report.damage = messages.damage();
+        self.report.back_steps = messages.back_steps();
+        let (steps, more) = messages.clock_steps();
+        (self.report.clock_steps, self.report.clock_steps_more) = (steps.to_vec(), more);
+        (self.report.joined, self.report.joined_at_s) = messages.joined();
+        self.report.note_unused(self.tracker.counts().geometry_refused);
         for kind in self.report.messages.values_mut() {
             kind.rate_hz = kind.rate.hz();
         }

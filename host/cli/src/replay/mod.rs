@@ -72,8 +72,9 @@ pub(crate) struct ReplayArgs {
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 the file is whole, and the hosts of a trace decide as recorded; 1 the file is cut or damaged (what could be read is told,
-and where it ends on stderr), hosts decide otherwise, or what was asked for is not in it; 2 wrong usage.
+Exit codes: 0 the file is whole and all of it was of use, and the hosts of a trace decide as recorded; 1 the file is cut or damaged
+(what could be read is told, and where it ends on stderr), messages in it could not be used, hosts decide otherwise, or what was asked
+for is not in it; 2 wrong usage.
 With --compare: 0 the traces are equal, 1 they differ, or one of them is damaged or cannot be compared with the other; 2 wrong usage.";
 
 pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {

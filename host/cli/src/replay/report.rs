@@ -7,6 +7,8 @@ use feed::recording::{ClockStep, Rate, RefereeEvent, Score, Sheet};
 use foreign::printable;
 use host::{referee, tracking};
 use serde::Serialize;
+use ssl::log::MessageKind;
+use ssl::vision::WrapperPacket;
 
 /// A league log file in numbers.
 #[derive(Debug, Default, Serialize)]
@@ -30,6 +32,16 @@ pub(super) struct Report {
     pub(super) clock_steps: Vec<ClockStep>,
     /// Steps beyond those that are listed.
     pub(super) clock_steps_more: u64,
+    /// Number of files joined to the first one, and the time at which the first of them begins.
+    pub(super) joined: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) joined_at_s: Option<f64>,
+    /// Fields that vision sent after another one, and when.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) other_fields: Vec<OtherField>,
+    /// Messages that were counted and could not be used, by reason.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) unused: Vec<String>,
     /// Last state of field and teams.
     #[serde(flatten)]
     pub(super) sheet: Sheet,
@@ -47,6 +59,14 @@ pub(super) struct Report {
     pub(super) referee: Referee,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) host: Option<Host>,
+}
+
+/// A field of other measures than the one before.
+#[derive(Debug, Serialize)]
+pub(super) struct OtherField {
+    pub(super) at_s: f64,
+    /// The one before, as text.
+    pub(super) before: String,
 }
 
 /// Messages of one kind.
@@ -121,12 +141,42 @@ pub(super) struct Host {
     pub(super) packets_hash: String,
 }
 
+/// Number of changes of the field that are listed.
+const FIELDS_LISTED: usize = 20;
 /// Number of gaps that are listed; beyond it they are only counted.
 const GAPS_LISTED: usize = 20;
 
 impl Report {
     pub(super) fn gap(&mut self, gap: Gap) {
         if self.gaps.len() < GAPS_LISTED { self.gaps.push(gap) } else { self.gaps_more += 1 }
+    }
+
+    /// The field of a packet of vision.
+    pub(super) fn field(&mut self, packet: &WrapperPacket, at_s: f64) {
+        let before = self.sheet.field;
+        self.sheet.vision(packet);
+        if let Some(before) = before.filter(|before| self.sheet.field != Some(*before))
+            && self.other_fields.len() < FIELDS_LISTED
+        {
+            let before = format!("{:.3} x {:.3} m", before.length, before.width);
+            self.other_fields.push(OtherField { at_s, before });
+        }
+    }
+
+    /// Notes what was counted and not used; after [`take`](Self::take).
+    pub(super) fn note_unused(&mut self, geometry_refused: u64) {
+        let images: u64 = self.cameras.values().map(|camera| camera.images).sum();
+        let (tracker, referee) = (&self.tracker, &self.referee);
+        let tracked = tracker.newest + tracker.reordered + tracker.restarts;
+        let heard = referee.taken + referee.old + referee.copies;
+        let told = self.messages.get(&MessageKind::Refbox2013.to_string()).map_or(0, |kind| kind.messages);
+        let unused = [
+            (self.undecodable > 0).then(|| format!("{} messages cannot be decoded", self.undecodable)),
+            (images > 0 && tracked == 0).then(|| format!("none of {images} camera frames could be tracked")),
+            (geometry_refused > 0).then(|| format!("{geometry_refused} geometries are of no field")),
+            (told > 0 && heard == 0).then(|| format!("none of {told} referee messages could be obeyed")),
+        ];
+        self.unused.extend(unused.into_iter().flatten());
     }
 
     pub(super) fn take(&mut self, tracker: &tracking::TrackingCounts, referee: referee::RefereeCounts) {
@@ -168,15 +218,28 @@ impl Report {
             lines.push(format!("  {} messages are earlier than the one before them", self.back_steps));
         }
         for step in &self.clock_steps {
-            let ClockStep { at_s, by_s } = step;
-            lines.push(if *by_s < 0.0 {
+            let ClockStep { at_s, by_s, played_s } = step;
+            lines.push(if *by_s > *played_s && *by_s > 0.0 {
+                format!("  the recorder's clock was set forward by {:.3} s at {at_s:.2} s", by_s - played_s)
+            } else if *by_s < 0.0 {
                 format!("  the recorder's clock was set back by {:.3} s at {at_s:.2} s", -by_s)
             } else {
                 format!("  nothing at all for {by_s:.3} s from {at_s:.2} s on: a pause, or the recorder's clock was set forward")
             });
         }
+        if let Some(at_s) = self.joined_at_s {
+            let more = if self.joined > 1 {
+                format!(", and {} more after it", self.joined - 1)
+            } else {
+                String::new()
+            };
+            lines.push(format!("  a second log begins in the file, at {at_s:.2} s{more}"));
+        }
         if self.clock_steps_more > 0 {
             lines.push(format!("  and {} such steps more", self.clock_steps_more));
+        }
+        for OtherField { at_s, before } in &self.other_fields {
+            lines.push(format!("the field was another one, {before}, until {at_s:.2} s"));
         }
         lines.extend(self.sheet.text());
         for (id, camera) in &self.cameras {
@@ -220,6 +283,9 @@ impl Report {
         let Score { blue, yellow } = self.score;
         lines.push(format!("score: blue {blue} : {yellow} yellow"));
         lines.extend(self.match_events.iter().map(RefereeEvent::line));
+        for unused in &self.unused {
+            lines.push(format!("not used: {unused}"));
+        }
         if let Some(damage) = &self.damage {
             lines.push(format!("the file is damaged: {}", printable(damage)));
         }

@@ -2,15 +2,15 @@
 //! stay; what results is checked before it is written.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use robots::{Description, Finding};
 use toml_edit::{Array, DocumentMut, Item, Value};
 
-use super::fit;
+use super::{fit, measurements};
 use crate::Failure;
+use crate::destination;
 use crate::output::print_text;
 use crate::robot_description::{DescriptionError, read};
 
@@ -84,15 +84,17 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     if args.dry_run {
         out.push_str("nothing is written (--dry-run)\n");
     } else {
-        replace(&file, &text)?;
+        destination::replace(&file, &text)?;
         let _ = writeln!(out, "written to {}; build for it again", args.file);
     }
     print_text(&out)
 }
 
 fn of_kicks(key: &'static str, file: &Path, points: usize) -> Result<Change, DescriptionError> {
-    let measured = pairs(file, ["pulse_us", "speed"])?;
-    let fit = fit::pulses(&measured, points).map_err(|what| DescriptionError::NoFit { key, what })?;
+    let measured = measurements::kicks(file)?;
+    let fit = fit::pulses(&measurements::values(&measured), points)
+        .map_err(|what| DescriptionError::NoFit { key, what })?;
+    measurements::check_kicks(file, &measured, &fit)?;
     let mut value = Array::new();
     for (speed, micros) in fit.table {
         let pair: Array = [Value::from(shortest(speed)), Value::from(micros as i64)].into_iter().collect();
@@ -107,9 +109,10 @@ fn of_drives(of: &Description, file: &Path, fitted: Fitted) -> Result<Change, De
         Fitted::Radius => "wheels.radius",
         Fitted::Gear => "wheels.encoder_gear",
     };
-    let driven = pairs(file, ["distance_m", "counts"])?;
-    let (per_metre, deviation) =
-        fit::counts_per_metre(&driven).map_err(|what| DescriptionError::NoFit { key, what })?;
+    let driven = measurements::drives(file, of)?;
+    let (per_metre, deviation) = fit::counts_per_metre(&measurements::values(&driven))
+        .map_err(|what| DescriptionError::NoFit { key, what })?;
+    measurements::check_drives(file, &driven, per_metre)?;
     let [lines, gear, radius] = ["wheels.encoder_lines", "wheels.encoder_gear", "wheels.radius"]
         .map(|path| f64::from(of.number(path)));
     let around = 2.0 * std::f64::consts::PI;
@@ -123,31 +126,6 @@ fn of_drives(of: &Description, file: &Path, fitted: Fitted) -> Result<Change, De
     let source =
         format!("Fitted to {count} drives of {}: each within {:.1} %.", name_of(file), 100.0 * deviation);
     Ok(Change { key, value, source })
-}
-
-/// Two columns of a CSV file, by their names.
-fn pairs(file: &Path, columns: [&str; 2]) -> Result<Vec<(f32, f32)>, DescriptionError> {
-    let wrong = |what: String| DescriptionError::Measurements { file: file.to_owned(), what };
-    let text = foreign::read_text(file, MEASUREMENTS_MAX).map_err(|error| wrong(error.to_string()))?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
-    let places = columns.map(|column| header.iter().position(|name| name == column));
-    let [Some(first), Some(second)] = places else {
-        return Err(wrong(format!("the first line must name the columns {} and {}", columns[0], columns[1])));
-    };
-    let mut pairs = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| wrong(error.to_string()))?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let number = |place: usize, column: &str| {
-            let text = record.get(place).unwrap_or_default();
-            let number = text.parse::<f32>().ok().filter(|number| number.is_finite());
-            let said = foreign::excerpt(text, 40);
-            number.ok_or_else(|| wrong(format!("line {line}: {column} is {said:?}; give a number")))
-        };
-        pairs.push((number(first, columns[0])?, number(second, columns[1])?));
-    }
-    Ok(pairs)
 }
 
 /// The text with the changes; comments and order stay, and a comment of an earlier fit is replaced.
@@ -172,15 +150,6 @@ fn written(text: &str, changes: &[Change]) -> Result<String, String> {
     Ok(file.to_string())
 }
 
-/// Replaces the file as a whole or not at all.
-fn replace(file: &Path, text: &str) -> Result<(), DescriptionError> {
-    let mut fresh = file.as_os_str().to_owned();
-    fresh.push(".new");
-    let fresh = PathBuf::from(fresh);
-    let done = fs::write(&fresh, text).and_then(|()| fs::rename(&fresh, file));
-    done.map_err(|error| DescriptionError::Write(file.to_owned(), error))
-}
-
 /// The shortest decimal number that reads as this one.
 fn shortest(number: f32) -> f64 {
     number.to_string().parse().unwrap_or(f64::from(number))
@@ -191,13 +160,13 @@ fn name_of(file: &Path) -> String {
     foreign::excerpt(&name, 80)
 }
 
-/// Largest file of measurements, bytes.
-const MEASUREMENTS_MAX: u64 = 1 << 24;
 /// Start of the comment of a fit.
 const FITTED: &str = "# Fitted to ";
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn measured(name: &str, text: &str) -> PathBuf {
@@ -235,15 +204,5 @@ mod tests {
         for file in [kicks, drives] {
             fs::remove_file(file).unwrap();
         }
-    }
-
-    #[test]
-    fn wrong_measurements_are_refused_with_file_line_and_remedy() {
-        let file = measured("wrong.csv", "pulse_us,speed\n1000,1.1\n2000,fast\n");
-        let error = pairs(&file, ["pulse_us", "speed"]).unwrap_err().to_string();
-        assert!(error.contains("wrong.csv: line 3: speed is \"fast\""), "{error}");
-        let error = pairs(&file, ["distance_m", "counts"]).unwrap_err().to_string();
-        assert!(error.contains("columns distance_m and counts"), "{error}");
-        fs::remove_file(file).unwrap();
     }
 }

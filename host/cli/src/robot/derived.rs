@@ -22,6 +22,7 @@ pub(super) fn rows(of: &Description) -> Vec<Row> {
         ("wheels, condition of the matrix (1 is even)", robots::condition(degrees) as f32, ""),
         ("wheel at free speed", 60.0 * free / (2.0 * PI * radius), "rpm"),
         ("encoder", counts / (2.0 * PI * radius), "counts/m"),
+        ("longest drive that a counter of 16 bits measures", COUNTER_MAX * 2.0 * PI * radius / counts, "m"),
         ("rim for a count", 1e3 * 2.0 * PI * radius / counts, "mm"),
     ];
     // A checked description has wheels that drive everywhere.
@@ -67,6 +68,8 @@ fn pulse(table: &[(f32, u64)], speed: f32) -> f32 {
     last.1
 }
 
+/// Most counts of a wheel's counter on a board.
+pub(super) const COUNTER_MAX: f32 = 65_535.0;
 /// Of the Earth, m/s².
 const GRAVITY: f32 = 9.81;
 
@@ -82,6 +85,8 @@ mod tests {
         // 6 m/s on 27 mm; 4096 counts on a circumference of 0.169646 m.
         assert!((of("wheel at free speed") - 2_122.07).abs() < 0.1);
         assert!((of("encoder") - 24_144.0).abs() < 2.0);
+        // 65,535 of these.
+        assert!((of("longest drive") - 2.7143).abs() < 1e-3);
         // 5 m/s over sin 60°; to the side the back wheels' cos 135° is the larger part.
         assert!((of("top speed ahead") - 5.7735).abs() < 1e-3);
         assert!((of("top speed to the side") - 7.0711).abs() < 1e-3);

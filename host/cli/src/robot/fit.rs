@@ -11,6 +11,21 @@ pub(super) struct PulseFit {
     pub(super) count: usize,
 }
 
+impl PulseFit {
+    /// The speed that the robot gets from a pulse, µs, of the table, m/s: straight lines from 0 at 0; the last
+    /// beyond.
+    pub(super) fn speed_of(&self, pulse: f64) -> f64 {
+        let mut last = (0.0, 0.0);
+        for (speed, micros) in self.table.iter().map(|(speed, micros)| (f64::from(*speed), *micros as f64)) {
+            if pulse <= micros {
+                return last.0 + (pulse - last.1) / (micros - last.1) * (speed - last.0);
+            }
+            last = (speed, micros);
+        }
+        last.0
+    }
+}
+
 /// The mean of measurements that lie together.
 #[derive(Clone, Copy, Debug)]
 struct Block {
@@ -34,8 +49,12 @@ pub(super) fn pulses(measured: &[(f32, f32)], most: usize) -> Result<PulseFit, S
     let mut sorted: Vec<_> =
         measured.iter().map(|(pulse, speed)| (f64::from(*pulse), f64::from(*speed))).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Up to this pulse the plunger does not move the ball.
+    let dead =
+        sorted.iter().filter(|(_, speed)| *speed < f64::from(SPEED_OF_NO_KICK)).map(|(pulse, _)| *pulse);
+    let dead = dead.reduce(f64::max);
     let mut blocks: Vec<Block> = Vec::new();
-    for (pulse, speed) in &sorted {
+    for (pulse, speed) in sorted.iter().filter(|(pulse, _)| dead.is_none_or(|dead| *pulse > dead)) {
         let one = Block { pulse: *pulse, speed: *speed, weight: 1.0 };
         match blocks.last_mut() {
             Some(last) if (pulse - last.pulse).abs() < SAME_PULSE => *last = last.joined(one),
@@ -46,10 +65,10 @@ pub(super) fn pulses(measured: &[(f32, f32)], most: usize) -> Result<PulseFit, S
         let what = format!("{} different pulses were measured", blocks.len());
         return Err(format!("{what}; measure at least {PULSES_MIN}, from the shortest to the longest"));
     }
-    let mut table = thinned(rising(&blocks), most);
-    table.retain(|block| block.speed > 0.0);
+    let table = thinned(rising(&blocks), most - usize::from(dead.is_some()));
+    let start = dead.map(|pulse| Block { pulse, speed: f64::from(SPEED_OF_NO_KICK), weight: 1.0 });
     let mut rounded: Vec<(f32, u64)> = Vec::new();
-    for block in &table {
+    for block in start.iter().chain(&table) {
         let pair = ((block.speed * 100.0).round() as f32 / 100.0, block.pulse.round() as u64);
         if rounded.last().is_none_or(|last| pair.0 > last.0 && pair.1 > last.1) && pair.0 > 0.0 {
             rounded.push(pair);
@@ -60,9 +79,10 @@ pub(super) fn pulses(measured: &[(f32, f32)], most: usize) -> Result<PulseFit, S
             "the speed does not rise with the pulse; check the columns and the capacitor's charge".into()
         );
     }
-    let squares = sorted.iter().map(|(pulse, speed)| (speed - speed_of(&rounded, *pulse)).powi(2));
-    let rms = (squares.sum::<f64>() / sorted.len() as f64).sqrt() as f32;
-    Ok(PulseFit { table: rounded, rms, count: measured.len() })
+    let mut fit = PulseFit { table: rounded, rms: 0.0, count: measured.len() };
+    let squares = sorted.iter().map(|(pulse, speed)| (speed - fit.speed_of(*pulse)).powi(2));
+    fit.rms = (squares.sum::<f64>() / sorted.len() as f64).sqrt() as f32;
+    Ok(fit)
 }
 
 /// Pools adjacent violators: the rising means nearest to the blocks by least squares.
@@ -93,18 +113,6 @@ fn thinned(mut blocks: Vec<Block>, most: usize) -> Vec<Block> {
     blocks
 }
 
-/// The speed that the robot gets from a pulse of the table, m/s: straight lines from 0 at 0; the last beyond.
-fn speed_of(table: &[(f32, u64)], pulse: f64) -> f64 {
-    let mut last = (0.0, 0.0);
-    for (speed, micros) in table.iter().map(|(speed, micros)| (f64::from(*speed), *micros as f64)) {
-        if pulse <= micros {
-            return last.0 + (pulse - last.1) / (micros - last.1) * (speed - last.0);
-        }
-        last = (speed, micros);
-    }
-    last.0
-}
-
 /// Counts for a metre from driven distances, m, and counts: least squares through the origin; and the largest
 /// deviation of a single drive from it, as a share.
 pub(super) fn counts_per_metre(driven: &[(f32, f32)]) -> Result<(f64, f64), String> {
@@ -125,6 +133,9 @@ pub(super) fn counts_per_metre(driven: &[(f32, f32)]) -> Result<(f64, f64), Stri
     Ok((per_metre, deviation.fold(0.0, f64::max)))
 }
 
+/// A slower ball was not kicked, m/s: the longest pulse that gives one stands for this speed, so that a table
+/// promises more only beyond it.
+pub(super) const SPEED_OF_NO_KICK: f32 = 0.1;
 /// Pulses that are one, µs.
 const SAME_PULSE: f64 = 0.5;
 /// Different pulses for a table: two ends and one that shows the curve.
@@ -152,6 +163,17 @@ mod tests {
             assert!((curve(*micros as f32) - speed).abs() < 0.011, "{:?}", fit.table);
         }
         assert!((0.03..0.08).contains(&fit.rms), "{}", fit.rms);
+    }
+
+    #[test]
+    fn pulses_that_do_not_move_the_ball_are_the_table_s_beginning() {
+        let kicks = [(500.0, 0.0), (1000.0, 0.0), (1500.0, 0.0), (2000.0, 2.6), (3000.0, 4.4), (4000.0, 5.6)];
+        let fit = pulses(&kicks, 6).unwrap();
+        assert_eq!(fit.table, [(0.1, 1500), (2.6, 2000), (4.4, 3000), (5.6, 4000)]);
+        assert!(fit.speed_of(1500.0) <= 0.1 + 1e-6, "no speed is promised there");
+        // The dead zone's pair is one of those that are asked for.
+        assert_eq!(pulses(&kicks, 3).unwrap().table.len(), 3);
+        assert!(pulses(&[(500.0, 0.0), (1000.0, 0.0), (1500.0, 0.0)], 6).is_err());
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod bring_up;
 mod calibrate;
 mod derived;
 mod fit;
+mod measurements;
 mod show;
 
 use std::fmt::Write as _;

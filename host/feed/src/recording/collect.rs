@@ -22,9 +22,9 @@ use thiserror::Error;
 
 use super::ReadObserver;
 
-use super::clock::LogClock;
 use super::decisions::{Decision, Decisions};
 use super::failure::{RecordedError, RecordingFailure, in_file};
+use super::log_messages::LogMessages;
 use super::trace_file::{TraceFile, begin, begins_as_trace, hosts_of};
 
 /// Why nothing is collected.
@@ -83,7 +83,7 @@ pub fn collect(
             from_trace(file, known, key_file, cases, observer)?
         } else if begin.starts_with(LOG) {
             from_log(file, known, observer)?
-        } else if begin.first().is_none_or(|first| *first == b'{' || first.is_ascii_whitespace()) {
+        } else if begin.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&begin).first().is_none_or(begins_json) {
             from_text(file)?
         } else {
             return Err(in_file(file)(RecordedError::NoRecording).into());
@@ -97,7 +97,7 @@ pub fn collect(
 fn from_text(file: &Path) -> Result<Collected, RecordingFailure> {
     let failed = |what: String| in_file(file)(RecordedError::Damaged(what));
     let text = foreign::read_text(file, TEXT_LEN_MAX).map_err(|error| failed(error.to_string()))?;
-    Collected::from_jsonl(&text).map_err(failed)
+    Collected::from_jsonl(text.trim_start_matches('\u{feff}')).map_err(failed)
 }
 
 /// A trace of a match: evidence of the teams whose robots had this library.
@@ -229,22 +229,22 @@ fn from_log(
     if league.limits().is_none() {
         return Err(other_league(file, "the Small Size League", known).into());
     }
-    let mut reader = ssl::log::open(file).map_err(in_file(file))?;
+    let mut messages = LogMessages::open(file)?;
     let mut host = Host::new(HostSettings::new(Colour::Blue, league, 1), Instant(0));
-    let (mut finder, mut clock) = (PlayFinder::default(), LogClock::default());
-    for record in reader.by_ref() {
+    let mut finder = PlayFinder::default();
+    for (now, record) in messages.by_ref() {
         observer.record();
-        let now = clock.read(record.timestamp_ns);
-        let input = match record.kind {
-            MessageKind::Vision2014 => Input::Vision(&record.payload),
-            MessageKind::Refbox2013 => Input::Referee(&record.payload, SenderAddress::INTERNAL),
+        let present = record.present();
+        let input = match &present {
+            Some((MessageKind::Vision2014, bytes)) => Input::Vision(bytes),
+            Some((MessageKind::Refbox2013, bytes)) => Input::Referee(bytes, SenderAddress::INTERNAL),
             _ => continue,
         };
         host.handle(now, input);
         while host.poll_packet().is_some() {}
         finder.look(&host, now.0 as f64 * 1e-6);
     }
-    if let Some(damage) = reader.end().filter(|end| !end.is_whole()) {
+    if let Some(damage) = messages.damage() {
         observer.note(&format!("{}: {damage}; what was before counts", printable_path(file)));
     }
     Ok(Collected { evidence: Evidence::default(), plays: finder.finish().into_iter().collect() })
@@ -255,6 +255,13 @@ fn other_league(file: &Path, recorded: &str, known: &OpenLibrary) -> RecordingFa
     in_file(file)(RecordedError::OtherLeague { recorded: recorded.to_owned(), library })
 }
 
+/// Whether a text that begins with this byte may be lines of JSON.
+fn begins_json(first: &u8) -> bool {
+    *first == b'{' || first.is_ascii_whitespace()
+}
+
+/// What some editors put before a text.
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 /// The first bytes of every league log file.
 const LOG: &[u8] = b"SSL_LOG_FILE";
 /// Longest `evidence.jsonl` that is read, bytes.

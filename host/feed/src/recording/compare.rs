@@ -145,7 +145,7 @@ pub fn comparable(file: &Path, other: &Path) -> Result<League, RecordingFailure>
     let (one, two) = (TraceFile::open(file)?, TraceFile::open(other)?);
     let ((a_version, a), (b_version, b)) = ((one.version(), &one.header), (two.version(), &two.header));
     let unlike = |what: String| Err(in_file(other)(RecordedError::Unlike(what)));
-    if a_version != b_version {
+    if one.has_senders() != two.has_senders() {
         return unlike(format!(
             "a trace of format {b_version}, the other is of format {a_version}: record both with the same program"
         ));

@@ -76,6 +76,9 @@ pub enum RecordedError {
     /// Place where the file is cut or damaged.
     #[error("{0}")]
     Damaged(String),
+    /// What was counted in it and is of no use.
+    #[error("{0}; the rest is told above")]
+    Unused(String),
     /// A moment or event that the recording lacks.
     #[error("{asked}{}", and_damage(damage.as_deref()))]
     NotThere {

@@ -20,8 +20,8 @@ use ssl::log::MessageKind;
 
 use super::ReadObserver;
 use super::beside::Beside;
-use super::clock::LogClock;
 use super::failure::{RecordedError, RecordingFailure, in_file};
+use super::log_messages::LogMessages;
 use super::trace_file::{TraceFile, hosts_of};
 use crate::{Composer, LedgerFeed, Moment, SCENE_EVERY_S};
 
@@ -116,25 +116,25 @@ impl<'a> Projector<'a> {
         team: Option<Colour>,
         stopped: &AtomicBool,
     ) -> Result<Shown, RecordingFailure> {
-        let mut reader = ssl::log::open(file).map_err(in_file(file))?;
+        let mut messages = LogMessages::open(file)?;
         let settings = HostSettings::new(team.unwrap_or(Colour::Blue), league, 1);
         let mut host = Host::new(settings, Instant(0));
         let displayed = usize::from(team.is_some());
-        let (mut clock, mut began, mut now) = (LogClock::default(), false, Instant(0));
-        for record in reader.by_ref() {
+        let (mut began, mut now) = (false, Instant(0));
+        for (at, record) in messages.by_ref() {
             if stopped.load(Ordering::Relaxed) {
                 return Ok(Shown::Stopped);
             }
             began = true;
-            now = clock.read(record.timestamp_ns);
-            match record.kind {
-                MessageKind::Vision2014 => {
-                    self.composer.vision(&record.payload);
-                    host.handle(now, Input::Vision(&record.payload));
+            now = at;
+            match record.present() {
+                Some((MessageKind::Vision2014, bytes)) => {
+                    self.composer.vision(&bytes);
+                    host.handle(now, Input::Vision(&bytes));
                 }
-                MessageKind::Refbox2013 => {
-                    self.composer.referee(&record.payload, now.0 as f64 * 1e-6, false);
-                    host.handle(now, Input::Referee(&record.payload, SenderAddress::INTERNAL));
+                Some((MessageKind::Refbox2013, bytes)) => {
+                    self.composer.referee(&bytes, now.0 as f64 * 1e-6, false);
+                    host.handle(now, Input::Referee(&bytes, SenderAddress::INTERNAL));
                 }
                 _ => continue,
             }
@@ -144,10 +144,10 @@ impl<'a> Projector<'a> {
         if !began {
             return Err(in_file(file)(RecordedError::Empty));
         }
-        let Some(end) = reader.end().filter(|end| !end.is_whole()) else {
+        let Some(damage) = messages.damage() else {
             return Ok(Shown::Whole { same: true });
         };
-        self.breaks_off(now, &end.to_string(), &host, &[&host][..displayed]);
+        self.breaks_off(now, &damage, &host, &[&host][..displayed]);
         Ok(Shown::Broken { same: true })
     }
 

@@ -47,6 +47,11 @@ impl<'f> TraceFile<'f> {
         self.reader.version
     }
 
+    /// Whether referees' records name their senders.
+    pub const fn has_senders(&self) -> bool {
+        self.reader.has_senders()
+    }
+
     /// The hosts of the recording, to be fed with its records; sealed frames are opened with the key in
     /// `key_file`.
     pub fn recheck(

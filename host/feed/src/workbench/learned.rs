@@ -2,7 +2,6 @@
 //! changes that the author has refused.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use case_tools::Files;
@@ -62,9 +61,7 @@ pub(super) fn refuse(library: Option<&Path>, case: &str, words: &str, refuses: b
     }
     let file = found(directory, REFUSALS).unwrap_or_else(|| report.with_file_name(REFUSALS));
     let failed = |error: std::io::Error| format!("{REFUSALS} cannot be written: {error}");
-    let part = file.with_extension("part");
-    fs::write(&part, refusals_to_jsonl(&refused)).map_err(failed)?;
-    fs::rename(&part, &file).map_err(failed)
+    foreign::replace(&file, refusals_to_jsonl(&refused).as_bytes()).map_err(failed)
 }
 
 const REPORT_FILE: &str = "report.json";

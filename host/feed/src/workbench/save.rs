@@ -2,7 +2,7 @@
 //! text that the author has not seen.
 
 use std::fs;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::Path;
 
 use case_tools::Severity;
@@ -41,17 +41,7 @@ pub(super) fn save(directory: &Path, sheet: &Sheet, over: Option<&str>) -> Resul
         Err(error) if error.kind() == ErrorKind::NotFound => {}
         Err(error) => return Err(failed(error)),
     }
-    let part = region.join(format!(".{}.part", sheet.name.replace('/', "-")));
-    let write = || {
-        let mut out = fs::File::create(&part)?;
-        out.write_all(sheet.text.as_bytes())?;
-        out.sync_all()?;
-        fs::rename(&part, &file)
-    };
-    write().map_err(|error| {
-        let _ = fs::remove_file(&part);
-        failed(error)
-    })
+    foreign::replace(&file, sheet.text.as_bytes()).map_err(failed)
 }
 
 /// Start of the refusal to save over a case.

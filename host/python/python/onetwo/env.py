@@ -1,4 +1,4 @@
-"""A Gymnasium environment over the Small Size simulator; importing it registers `onetwo/Score-v0`.
+"""A Gymnasium environment over the Small Size simulator, `onetwo/Score-v0`.
 
 Needs `gymnasium` and `numpy` (`pip install "onetwo[gym]"`, or from a clone `pip install "./host/python[gym]"`).
 """
@@ -12,6 +12,7 @@ import numpy as np
 from gymnasium import spaces
 
 from ._native import Simulator
+from .registration import register
 
 
 class ScoreEnv(gymnasium.Env):
@@ -24,7 +25,7 @@ class ScoreEnv(gymnasium.Env):
     `info["time_s"]` when.
     """
 
-    metadata = {"render_modes": []}
+    metadata = {"render_modes": ["ansi"], "render_fps": 40}
 
     def __init__(
         self,
@@ -34,11 +35,11 @@ class ScoreEnv(gymnasium.Env):
         league: str = "division-b",
         period_ms: int = 25,
         time_limit_s: float = 30.0,
-        render_mode: None = None,
+        render_mode: str | None = None,
     ) -> None:
-        if render_mode is not None:
-            raise ValueError(f"render_mode {render_mode!r}: this environment draws nothing; leave it out")
-        self.render_mode = None
+        if render_mode not in (None, "ansi"):
+            raise ValueError(f"render_mode {render_mode!r}: take 'ansi', a line of text, or none")
+        self.render_mode = render_mode
         self.simulator = Simulator(
             own, opponents, league=league, period_ms=period_ms, time_limit_s=time_limit_s
         )
@@ -56,6 +57,16 @@ class ScoreEnv(gymnasium.Env):
         self.simulator.observe(observation)
         return observation, {"end": None, "time_s": 0.0}
 
+    def render(self) -> str:
+        """With `render_mode="ansi"` the state as a line of text: time, ball and robots, m."""
+        if self.render_mode is None:
+            raise ValueError("render: make the environment with render_mode='ansi', the only one that it has")
+        state = self.simulator.state()
+        parts = [f"{state['time_s']:.2f} s", "ball ({:+.2f}, {:+.2f})".format(*state["ball"]["position"])]
+        for side in ("own", "opponents"):
+            parts += [f"{side} {n} ({r['position'][0]:+.2f}, {r['position'][1]:+.2f})" for n, r in enumerate(state[side])]
+        return "; ".join(parts)
+
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Plays one control period."""
         observation = np.empty(self._size, np.float32)
@@ -66,5 +77,4 @@ class ScoreEnv(gymnasium.Env):
         return observation, reward, end is not None and not truncated, truncated, info
 
 
-if "onetwo/Score-v0" not in gymnasium.registry:
-    gymnasium.register("onetwo/Score-v0", entry_point="onetwo.env:ScoreEnv")
+register()

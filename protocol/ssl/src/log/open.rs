@@ -6,7 +6,7 @@ use std::path::Path;
 
 use flate2::bufread::MultiGzDecoder;
 
-use super::reader::{fill, parse_header};
+use super::reader::{FILE_BEGIN, fill, parse_header};
 use super::{Index, LogError, LogReader, MESSAGE_HEADER};
 
 /// The bytes of an opened file.
@@ -139,6 +139,10 @@ fn scan(file: &mut BufReader<File>, mut at: u64, timestamp_ns: i64) -> Result<u6
     loop {
         let mut header = [0; MESSAGE_HEADER];
         let bytes = fill(file, &mut header).map_err(|(_, error)| LogError::Read(error))?;
+        if header == *FILE_BEGIN {
+            at += MESSAGE_HEADER as u64;
+            continue;
+        }
         let (time, kind, size) = parse_header(&header);
         let is_message = !matches!(kind, Blank | Index2021);
         if bytes < MESSAGE_HEADER || size < 0 || (is_message && time >= timestamp_ns) {

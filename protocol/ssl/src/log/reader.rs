@@ -4,20 +4,38 @@
 //! damage is returned, nothing larger than [`PAYLOAD_MAX`] is allocated, and the end is reported.
 
 use std::fmt;
-use std::io::{self, Read};
+use std::io::{self, Cursor, Read};
 
 use super::{FILE_HEADER, LogError, MAGIC, MESSAGE_HEADER, MessageKind, PAYLOAD_MAX, Record, VERSION};
 
 /// Reads messages from first to last; an iterator. Blank messages and the index are counted and skipped.
 #[derive(Debug)]
 pub struct LogReader<R> {
-    source: R,
+    source: Held<R>,
     /// Start of the next message, bytes from the (unzipped) file's start.
     at: u64,
     ahead: Option<Record>,
     last_ns: Option<i64>,
     counts: LogCounts,
+    /// Damage after which another file begins.
+    broken: Option<LogEnd>,
     end: Option<LogEnd>,
+}
+
+/// A source, and bytes of it that are read once more.
+#[derive(Debug)]
+struct Held<R> {
+    held: Cursor<Vec<u8>>,
+    source: R,
+}
+
+impl<R: Read> Read for Held<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self.held.read(buffer)? {
+            0 => self.source.read(buffer),
+            bytes => Ok(bytes),
+        }
+    }
 }
 
 /// Counters of the messages read.
@@ -29,7 +47,9 @@ pub struct LogCounts {
     pub blank: u64,
     /// Number of indices skipped: 0 or 1 in a valid file.
     pub index: u64,
-    /// Number of messages earlier than the one before them.
+    /// Number of files that were joined to the first one.
+    pub joined: u64,
+    /// Number of messages earlier than the one before them in their file.
     pub back_steps: u64,
     /// The largest such step, ns.
     pub largest_back_step_ns: u64,
@@ -53,6 +73,13 @@ pub enum LogEnd {
         at: u64,
         /// The size it declares.
         size: i32,
+    },
+    /// Within a message another file begins, which was joined to this one; it was read, too.
+    Joined {
+        /// Start of that message.
+        at: u64,
+        /// Start of the other file.
+        next: u64,
     },
     /// The file cannot be read or gunzipped any further.
     Read {
@@ -85,6 +112,11 @@ impl fmt::Display for LogEnd {
                 "damaged: the message at byte {at} claims {size} bytes, at most {PAYLOAD_MAX} are possible; all before it \
                  was read"
             ),
+            Self::Joined { at, next } => write!(
+                f,
+                "cut: the message at byte {at} breaks off at byte {next}, where another log file begins; all the rest was \
+                 read"
+            ),
             Self::Read { at, error } => {
                 write!(f, "not readable from the message at byte {at} on: {error}; all before it was read")
             }
@@ -116,7 +148,8 @@ impl<R: Read> LogReader<R> {
 
     /// Continues reading from a message's first byte, which is byte `at` of the file.
     pub(super) fn from_message(source: R, at: u64) -> Self {
-        Self { source, at, ahead: None, last_ns: None, counts: LogCounts::default(), end: None }
+        let source = Held { held: Cursor::default(), source };
+        Self { source, at, ahead: None, last_ns: None, counts: LogCounts::default(), broken: None, end: None }
     }
 
     /// End of the file; `None` until the iterator gave its last message.
@@ -149,14 +182,20 @@ impl<R: Read> LogReader<R> {
             let at = self.at;
             let mut header = [0; MESSAGE_HEADER];
             match fill(&mut self.source, &mut header) {
-                Ok(0) => return Err(LogEnd::Whole),
+                Ok(0) => return Err(self.broken.take().unwrap_or(LogEnd::Whole)),
                 Ok(MESSAGE_HEADER) => {}
                 Ok(bytes) => return Err(LogEnd::Cut { at, bytes: bytes as u64 }),
                 Err((bytes, error)) => return Err(broken_off(at, bytes as u64, error)),
             }
+            if header == *FILE_BEGIN {
+                self.at += FILE_HEADER as u64;
+                self.counts.joined += 1;
+                self.last_ns = None;
+                continue;
+            }
             let (timestamp_ns, kind, size) = parse_header(&header);
-            let length = usize::try_from(size).map_err(|_| LogEnd::Size { at, size })?;
-            if matches!(kind, MessageKind::Blank | MessageKind::Index2021) {
+            let length = usize::try_from(size).unwrap_or(usize::MAX);
+            if size >= 0 && matches!(kind, MessageKind::Blank | MessageKind::Index2021) {
                 // An index may be large; it is not kept.
                 let skipped = io::copy(&mut self.source.by_ref().take(length as u64), &mut io::sink());
                 let skipped = skipped.map_err(|error| broken_off(at, MESSAGE_HEADER as u64, error))?;
@@ -170,6 +209,9 @@ impl<R: Read> LogReader<R> {
                 continue;
             }
             if length > PAYLOAD_MAX {
+                if self.find_next_file(&header) {
+                    continue;
+                }
                 return Err(LogEnd::Size { at, size });
             }
             let mut payload = vec![0; length];
@@ -178,9 +220,42 @@ impl<R: Read> LogReader<R> {
                 Ok(bytes) => return Err(LogEnd::Cut { at, bytes: (MESSAGE_HEADER + bytes) as u64 }),
                 Err((bytes, error)) => return Err(broken_off(at, (MESSAGE_HEADER + bytes) as u64, error)),
             }
+            if payload.windows(FILE_HEADER).any(|bytes| bytes == FILE_BEGIN)
+                && self.find_next_file(&[&header, &payload[..]].concat())
+            {
+                continue;
+            }
             self.at += (MESSAGE_HEADER + length) as u64;
             self.count(timestamp_ns);
             return Ok(Record { timestamp_ns, kind, payload });
+        }
+    }
+
+    /// Goes to the beginning of the next joined file, in `begun` (the bytes from `at` on that were read) or
+    /// after it; false if there is none.
+    fn find_next_file(&mut self, begun: &[u8]) -> bool {
+        let (at, mut next) = (self.at, self.at);
+        let mut bytes = begun.to_vec();
+        loop {
+            if let Some(place) = bytes.windows(FILE_HEADER).position(|bytes| bytes == FILE_BEGIN) {
+                bytes.drain(..place);
+                next += place as u64;
+                // Bytes that were held already come after these.
+                let rest = self.source.held.position() as usize;
+                bytes.extend_from_slice(&self.source.held.get_ref()[rest..]);
+                self.source.held = Cursor::new(bytes);
+                self.at = next;
+                self.broken.get_or_insert(LogEnd::Joined { at, next });
+                return true;
+            }
+            let passed = bytes.len().saturating_sub(FILE_HEADER - 1);
+            bytes.drain(..passed);
+            next += passed as u64;
+            let mut more = [0; 4096];
+            match fill(&mut self.source, &mut more) {
+                Ok(0) | Err(_) => return false,
+                Ok(count) => bytes.extend_from_slice(&more[..count]),
+            }
         }
     }
 
@@ -214,6 +289,9 @@ impl<R: Read> Iterator for LogReader<R> {
         }
     }
 }
+
+/// First bytes of a file of the version that is read: the magic and the version.
+pub(super) const FILE_BEGIN: &[u8; FILE_HEADER] = b"SSL_LOG_FILE\0\0\0\x01";
 
 /// Time, type and size before a payload.
 pub(super) fn parse_header(header: &[u8; MESSAGE_HEADER]) -> (i64, MessageKind, i32) {

@@ -4,8 +4,6 @@
 //! Each image has QEMU's own network (`-nic user`): it is 10.0.2.15 and this machine is 10.0.2.2, so that no
 //! right and no interface of the system is needed. Robots speak first, and answers find their way back.
 
-use std::fs::OpenOptions;
-use std::io::Write as _;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
@@ -23,8 +21,9 @@ use ssl::net::addresses;
 use virtual_robot::{AccessPoint, Bodies};
 
 use super::super::failure::FirmwareError;
-use super::{RunArgs, at, build, check, in_option, qemu_arguments};
+use super::{CHECK_EVERY, RunArgs, build, check, emulator_log, in_option, qemu_arguments};
 use crate::Failure;
+use crate::destination::{self, FileKind};
 use crate::output::note;
 use crate::stop::stopped_by_hand;
 
@@ -34,8 +33,6 @@ const PC_ADDRESS: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 2);
 const ROBOT_ADDRESS: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 15);
 /// Port of an image's radio; that of its body is the next.
 const RADIO_PORT: u16 = 10_400;
-/// The emulators are looked after this often.
-const CHECK_EVERY: Duration = Duration::from_millis(100);
 /// A port to which nobody listens: `discard` (RFC 863).
 const DISCARD_PORT: u16 = 9;
 
@@ -71,7 +68,9 @@ pub(super) fn run(address: SocketAddr, args: &RunArgs) -> Result<(), Failure> {
         let journal = args.journal.as_deref().map(|directory| prepare(directory, who)).transpose()?;
         let mut arguments = qemu_arguments(&image, Some(file), "null");
         arguments.extend(network_arguments(&network, who, journal.as_deref()));
-        let child = hil_sim::emulator_command(qemu.as_ref()).args(arguments).stdin(Stdio::null()).spawn()?;
+        let mut command = hil_sim::emulator_command(qemu.as_ref());
+        let mut child = command.args(arguments).stdin(Stdio::null()).stderr(Stdio::piped()).spawn()?;
+        emulator_log::follow(&mut child, &format!("robot {}: ", who.robot));
         team.0.push((who.robot.number(), child));
     }
     let end = args.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
@@ -150,12 +149,10 @@ fn simulator(text: &str, team: Option<Colour>) -> Result<SocketAddr, Failure> {
 /// An empty journal for a robot: the memory of its board, as a file.
 fn prepare(directory: &Path, who: &Provision) -> Result<PathBuf, Failure> {
     let path = directory.join(format!("robot{}.journal", who.robot));
-    let written = std::fs::create_dir_all(directory).and_then(|()| {
-        let mut file = OpenOptions::new().write(true).create(true).truncate(true).open(&path)?;
-        file.set_len(JOURNAL_LEN as u64)?;
-        file.write_all(&journal::MAGIC)
-    });
-    written.map_err(at(&path))?;
+    destination::make_directory(directory)?;
+    let mut empty = vec![0; JOURNAL_LEN];
+    empty[..journal::MAGIC.len()].copy_from_slice(&journal::MAGIC);
+    destination::write(&path, FileKind::Bytes, &empty)?;
     Ok(path)
 }
 

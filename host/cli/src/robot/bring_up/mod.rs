@@ -24,7 +24,7 @@ use protocol::{RobotId, TeamId};
 use rules::Phase;
 
 use crate::Failure;
-use crate::args::parsers::{robot_number, seconds};
+use crate::args::parsers::{radio_team, robot_number, seconds};
 use crate::output::{note, print_text};
 use crate::stop::{signal, stopped_by_hand};
 use failure::BringUpError;
@@ -38,8 +38,8 @@ pub(crate) struct BringUpArgs {
     #[arg(long, value_name = "LINK")]
     robots: String,
     /// Its team's number on the radio, as in its page: 1 yellow, 2 blue.
-    #[arg(long, value_name = "N")]
-    team: u8,
+    #[arg(long, value_name = "N", value_parser = radio_team)]
+    team: TeamId,
     /// The team's key: 32 hexadecimal digits in a file; the robot's page must be derived from it.
     #[arg(long, value_name = "FILE")]
     key_file: PathBuf,
@@ -73,8 +73,8 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
     if let Some(warning) = &epoch.warning {
         note!("warning: {warning}");
     }
-    let mut host = HostLink::new(TeamId(args.team), read.key, epoch.epoch);
-    let mut progress = Progress::new(TeamId(args.team), &read.key, host.epoch(), args.robot);
+    let mut host = HostLink::new(args.team, read.key, epoch.epoch);
+    let mut progress = Progress::new(args.team, &read.key, host.epoch(), args.robot);
     let format = if args.json { Format::Json } else { Format::Text };
     note!("waiting for a robot's checks over {}; Ctrl-C ends it", args.robots);
     let began = Instant::now();
