@@ -92,10 +92,9 @@ fn place(game: &mut Game<'_>, start: &DrillStart) {
 /// One tick, with the script's orders.
 fn step(game: &mut Game<'_>, script: &mut Script) -> Result<(), GameError> {
     let phase = game.referee().phase();
-    let field = game.world().pitch().field;
     let orders = match phase {
         Phase::Halt => Vec::new(),
-        _ => script.orders(game.world(), &field, phase),
+        _ => script.orders(game.world(), phase),
     };
     for (who, order) in orders {
         game.world_mut().order(who, order);

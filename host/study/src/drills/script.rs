@@ -6,7 +6,7 @@ use hil_sim::small_size::{Drive, KickCommand, Order, Robot, World};
 use motion::ball::BallModel;
 use protocol::{RobotId, Who};
 use rules::limits::BALL_RADIUS;
-use rules::{Colour, FieldSpec, Phase};
+use rules::{Colour, Phase};
 
 use super::DrillKind;
 use super::start::{BALL_AHEAD_M, DrillStart, OUR_END, off_area};
@@ -65,12 +65,7 @@ impl Script {
     }
 
     /// Orders for all of theirs, every 10 ms.
-    pub(super) fn orders(
-        &mut self,
-        world: &World,
-        field: &FieldSpec,
-        phase: Phase<Colour>,
-    ) -> Vec<(Who, Order)> {
+    pub(super) fn orders(&mut self, world: &World, phase: Phase<Colour>) -> Vec<(Who, Order)> {
         let now = world.time();
         if phase == Phase::FreeKick(THEM) {
             self.given_s.get_or_insert(now);
@@ -78,12 +73,12 @@ impl Script {
         if world.last_touch().is_some_and(|(who, _)| who != them(self.start.lead)) && phase == Phase::Run {
             self.loose = true;
         }
-        let chaser = if self.loose && phase == Phase::Run { self.chaser(world, field) } else { None };
+        let chaser = if self.loose && phase == Phase::Run { self.chaser(world) } else { None };
         (0..self.start.theirs.len())
             .filter_map(|number| {
                 let who = them(number);
                 let robot = world.robot(who).filter(|robot| robot.present)?;
-                let wanted = self.wanted(world, field, phase, number, robot, chaser);
+                let wanted = self.wanted(world, phase, number, robot, chaser);
                 Some((who, order(robot, wanted)))
             })
             .collect()
@@ -92,7 +87,6 @@ impl Script {
     fn wanted(
         &mut self,
         world: &World,
-        field: &FieldSpec,
         phase: Phase<Colour>,
         number: usize,
         robot: &Robot,
@@ -101,19 +95,19 @@ impl Script {
         let lead = number == self.start.lead;
         let shooter = self.start.shooter.filter(|(shooter, _)| *shooter == number);
         match phase {
-            Phase::Run if chaser == Some(number) => chase(world, field, robot),
+            Phase::Run if chaser == Some(number) => chase(world, robot),
             Phase::Run if lead && !self.loose => match self.drill {
-                DrillKind::Carrier => self.carry(world, field, robot),
-                DrillKind::Shielder => self.shield(world, field, robot),
+                DrillKind::Carrier => self.carry(world, robot),
+                DrillKind::Shielder => self.shield(world, robot),
                 _ => self.hold(world, number, robot),
             },
             Phase::Run | Phase::FreeKick(THEM) if shooter.is_some() => {
                 let at = shooter.map_or(robot.pose.position, |(_, at)| at);
-                self.shoot_first(world, field, robot, at)
+                self.shoot_first(world, robot, at)
             }
             Phase::FreeKick(THEM) if lead => self.take_free_kick(world, robot),
             Phase::Stop | Phase::FreeKick(US) if lead && self.drill == DrillKind::Marker => {
-                step_into_line(world, field, robot)
+                step_into_line(world, robot)
             }
             _ => self.hold(world, number, robot),
         }
@@ -131,8 +125,9 @@ impl Script {
     }
 
     /// Along our area with the ball, and a shot as soon as the goal is open.
-    fn carry(&self, world: &World, field: &FieldSpec, robot: &Robot) -> Wanted {
-        let gap = gap(world, field, world.ball.position);
+    fn carry(&self, world: &World, robot: &Robot) -> Wanted {
+        let field = &world.pitch().field;
+        let gap = gap(world, world.ball.position);
         let face = robot.pose.position.direction_to(gap.aim);
         if !robot.ball_contact {
             return take_ball(world, robot);
@@ -155,7 +150,8 @@ impl Script {
 
     /// Keeps the ball at its front with its back to the nearest of ours, and moves away from it, as far as the
     /// rules let it dribble.
-    fn shield(&self, world: &World, field: &FieldSpec, robot: &Robot) -> Wanted {
+    fn shield(&self, world: &World, robot: &Robot) -> Wanted {
+        let field = &world.pitch().field;
         if !robot.ball_contact {
             return take_ball(world, robot);
         }
@@ -192,7 +188,8 @@ impl Script {
 
     /// To where the cross comes, turned to the goal's gap so that the ball crosses its front: a first-touch
     /// shot. Before the kick it waits where it stood.
-    fn shoot_first(&self, world: &World, field: &FieldSpec, robot: &Robot, at: Point<Field>) -> Wanted {
+    fn shoot_first(&self, world: &World, robot: &Robot, at: Point<Field>) -> Wanted {
+        let field = &world.pitch().field;
         if !self.kicked && world.ball.speed() < COMING_M_S {
             let face = robot.pose.position.direction_to(world.ball.position);
             return Wanted::go(off_area(field, robot.pose.position, AREA_OFF_M), face);
@@ -202,7 +199,7 @@ impl Script {
             return take_ball(world, robot);
         };
         let passes = ball + along * (at - ball).dot(along).max(0.0);
-        let aim = gap(world, field, passes).aim;
+        let aim = gap(world, passes).aim;
         let face = passes.direction_to(aim);
         let left = passes.distance(ball);
         Wanted {
@@ -215,7 +212,8 @@ impl Script {
     }
 
     /// The one of theirs that is soonest at the ball, if it may be played where it lies.
-    fn chaser(&self, world: &World, field: &FieldSpec) -> Option<usize> {
+    fn chaser(&self, world: &World) -> Option<usize> {
+        let field = &world.pitch().field;
         let ball = BallModel::default().rolling(world.ball.position, world.ball.velocity).rest();
         let near = world.ball.position;
         if field.distance_to_area(OUR_END, near) < BALL_RADIUS {
@@ -256,7 +254,8 @@ fn follows(drill: DrillKind, start: &DrillStart) -> Vec<Option<(Who, Vector<Fiel
 }
 
 /// Onto the line on which our kicker lines up, off the ball as the rules ask.
-fn step_into_line(world: &World, field: &FieldSpec, robot: &Robot) -> Wanted {
+fn step_into_line(world: &World, robot: &Robot) -> Wanted {
+    let field = &world.pitch().field;
     let ball = world.ball.position;
     let ours = world.robots().iter().filter(|robot| robot.present && robot.who.colour == US);
     let kicker = ours.min_by(|a, b| {
@@ -273,11 +272,11 @@ fn step_into_line(world: &World, field: &FieldSpec, robot: &Robot) -> Wanted {
 }
 
 /// To a loose ball, and with it a shot at the largest gap.
-fn chase(world: &World, field: &FieldSpec, robot: &Robot) -> Wanted {
+fn chase(world: &World, robot: &Robot) -> Wanted {
     if !robot.ball_contact {
         return take_ball(world, robot);
     }
-    let aim = gap(world, field, world.ball.position).aim;
+    let aim = gap(world, world.ball.position).aim;
     let face = robot.pose.position.direction_to(aim);
     let aimed = (face - robot.pose.heading).abs() < AIMED_RAD;
     Wanted {
@@ -316,7 +315,8 @@ struct Gap {
     angle: f32,
 }
 
-fn gap(world: &World, field: &FieldSpec, from: Point<Field>) -> Gap {
+fn gap(world: &World, from: Point<Field>) -> Gap {
+    let field = &world.pitch().field;
     let line = field.goal_line(OUR_END);
     let half = 0.5 * field.goal_width - BALL_RADIUS;
     let step = 2.0 * half / (AIMS - 1) as f32;
