@@ -8,6 +8,8 @@
 //! [`scenes`] plays short scenes with several variants of a team and measures what a part of its play is
 //! worth.
 //!
+//! [`drills`] plays our team against scripted opponents, from recorded situations.
+//!
 //! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
 //!
 //! [`penalty`] counts the penalties that our keeper saves.
@@ -18,6 +20,7 @@
 //! them; [`statistics`] has the tests and intervals that all of them use.
 #![forbid(unsafe_code)]
 
+pub mod drills;
 pub mod evaluation;
 pub mod learning;
 pub mod matches;

@@ -8,6 +8,7 @@ use clap::Args;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::strategy::{ROUND_1, Team};
 use rules::League;
+use study::drills::{DrillKind, DrillPlan, drill_results, drill_table, situations};
 use study::matches::MatchTeam;
 use study::scenes::{SceneEffect, ScenePlan, scene_effects, scene_table};
 use study::store::{EvaluationError, Experiment, csv_hash, to_csv};
@@ -45,6 +46,17 @@ pub(super) struct ScenesArgs {
     /// (man against man), zone (a wall that follows the ball) and round-1 (second-level threats).
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
     opponents: Vec<MatchTeam>,
+    /// Instead of scenes: these drills against scripted opponents, with commas between: carrier, marker, cross,
+    /// rebound, shielder, goal-line. Of our team's options --team, --world, --seed, --jobs, --csv, --json count.
+    #[arg(long = "drill", value_name = "LIST", value_delimiter = ',', value_parser = drill)]
+    drills: Vec<DrillKind>,
+    /// Draw the drills around the situations of this CSV file, plain or gzip, with its index.csv beside it; by
+    /// default around those that come with the program.
+    #[arg(long, value_name = "FILE", requires = "drills")]
+    situations: Option<PathBuf>,
+    /// Tries of each drill.
+    #[arg(long, default_value_t = 200, value_name = "N", requires = "drills", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    tries: u32,
     /// Random seed.
     #[arg(short, long, default_value_t = 1)]
     seed: u64,
@@ -54,7 +66,7 @@ pub(super) struct ScenesArgs {
     /// Write every scene as a row of this CSV file.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Print a JSON list, an object for each effect, and nothing else.
+    /// Print a JSON list, an object for each effect, and nothing else; of drills an object a line for each.
     #[arg(long, conflicts_with = "markdown")]
     json: bool,
     /// Put the table between the markers of this Markdown file.
@@ -67,8 +79,11 @@ pub(super) struct ScenesArgs {
 
 pub(super) fn run(args: &ScenesArgs) -> Result<ExitCode, Failure> {
     if let Some(file) = &args.csv {
-        let inputs: Vec<_> = args.markdown.as_deref().into_iter().collect();
+        let inputs: Vec<_> = args.markdown.iter().chain(&args.situations).map(PathBuf::as_path).collect();
         destination::check(&[(file, FileKind::Csv)], &inputs)?;
+    }
+    if !args.drills.is_empty() {
+        return run_drills(args);
     }
     let plan = args.plan();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
@@ -94,6 +109,54 @@ pub(super) fn run(args: &ScenesArgs) -> Result<ExitCode, Failure> {
     }
     work::print_text(&text)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Plays the drills; with --json one object a drill, a line each.
+fn run_drills(args: &ScenesArgs) -> Result<ExitCode, Failure> {
+    let situations = match &args.situations {
+        Some(file) => situations::read(file),
+        None => situations::built_in(),
+    };
+    let plan = DrillPlan {
+        drills: args.drills.clone(),
+        situations: situations?,
+        tries: args.tries,
+        seed: args.seed,
+        world: args.world,
+        team: args.team,
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
+    let pool = pool.map_err(Failure::Threads)?;
+    let (line, done) = (Progress::open(), AtomicU64::new(0));
+    let of = plan.drills.len() as u64 * u64::from(plan.tries);
+    let on_played = || line.set(done.fetch_add(1, Ordering::Relaxed) + 1, of);
+    let rows = pool.install(|| plan.play_all(&on_played))?;
+    drop(line);
+    let csv = to_csv(&rows).map_err(EvaluationError::from)?;
+    if let Some(file) = &args.csv {
+        write(file, &csv)?;
+    }
+    let results = drill_results(&plan, &rows);
+    if !args.json {
+        let text = drill_table(&results);
+        work::print_text(&format!(
+            "{text}\n{} in {}, seed {}, csv hash {}\n",
+            args.team,
+            args.world,
+            args.seed,
+            csv_hash(&csv)
+        ))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let lines: Result<Vec<_>, _> = results.iter().map(serde_json::to_string).collect();
+    let lines = lines.map_err(|error| Failure::Output(error.into()))?;
+    work::print_text(&format!("{}\n", lines.join("\n")))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn drill(label: &str) -> Result<DrillKind, String> {
+    DrillKind::from_label(label)
+        .ok_or_else(|| format!("take {}", DrillKind::ALL.map(DrillKind::label).join(", ")))
 }
 
 impl ScenesArgs {
