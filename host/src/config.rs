@@ -11,7 +11,7 @@
 //! insecure_zero_key = false       # true: real robots may use the key of zeros, which is public
 //! vision = "224.5.23.2:10006"
 //! referee = "224.5.23.1:10003"
-//! referee_source = "192.168.1.5"  # only referee obeyed: address or identifier; left out: the strictest
+//! referee_source = "192.168.1.5"  # accept only this referee: address or identifier; left out: the strictest
 //! referee_silence = "halt"        # after 2 s without a referee; "go-on": its last command is kept
 //! tracker = "224.5.23.2:10010"
 //! game_controller = "127.0.0.1:10008"   # the team's port; left out: no messages to the controller
@@ -20,7 +20,7 @@
 //!
 //! [[calibration]]                 # how a robot deviates from what is ordered
 //! robot = 3
-//! kick = 1.06                     # balls leave this much faster than ordered
+//! kick = 1.06                     # kick gain: measured / ordered ball speed
 //! latency_ms = 45                 # from an order to its motion; displayed, not used
 //!
 //! [ball]

@@ -76,10 +76,10 @@ pub(crate) struct PlayArgs {
     blue_tactics: Tactics,
     /// A program that gives yellow's orders: it gets the view as a line of JSON and answers with one
     /// (docs/strategy-protocol.md).
-    #[arg(long, value_name = "cmd:COMMAND")]
+    #[arg(long, value_name = "COMMAND")]
     yellow_strategy: Option<String>,
     /// The same for blue.
-    #[arg(long, value_name = "cmd:COMMAND")]
+    #[arg(long, value_name = "COMMAND")]
     blue_strategy: Option<String>,
     /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(short, long, value_name = "NAME")]
@@ -166,7 +166,9 @@ fn on_page(
     let explanations = CaseExplanations::sharing(library.clone(), settings);
     let world =
         if args.world == WorldChoice::Nominal { String::new() } else { format!(", world {}", args.world) };
-    let title = format!("{}, seed {}{world}", args.league.name(), args.seed);
+    let [blue, yellow] = [(args.blue, &args.blue_strategy), (args.yellow, &args.yellow_strategy)]
+        .map(|(team, command)| side(team, command.as_deref()));
+    let title = format!("{blue} – {yellow}, {}, seed {}{world}", args.league.name(), args.seed);
     let page = args.page.open(title, false, Powers::Simulation, explanations)?;
     note!("playing  {}; Ctrl-C ends it", args.league.name());
     let (speed, recorded) = (args.speed, args.record.is_some());
@@ -292,6 +294,11 @@ fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> i
         }
     }
     writeln!(out, "trace {}, to see it again: onetwo play --seed {}{text}", report.trace_hash, args.seed)
+}
+
+/// Who plays on a side: the command of a strategy, or the name of a team.
+fn side(team: Team, command: Option<&str>) -> &str {
+    command.unwrap_or_else(|| team.label())
 }
 
 /// Prints events on stdout, or the progress on a terminal where only the report is wanted.

@@ -35,9 +35,20 @@ const HALT_MAX: Duration = Duration::from_millis(500);
 const STALE_FRAMES_MAX: usize = 80;
 /// Resident memory may grow by at most this under a flood, bytes; 465 MB before.
 const GROWTH_MAX: u64 = 24 << 20;
+/// Datagrams of a flood before its first HALT: far more than the host's queue holds.
+const FLOODED_MIN: u64 = 5_000;
 /// A gigabit network, bytes a second.
 const LINE_RATE: u64 = 125_000_000;
 const KEY: [u8; 16] = [0x5a; 16];
+
+/// Waits for what must come.
+fn eventually(what: &str, holds: impl Fn() -> bool) {
+    let until = Instant::now() + PATIENCE;
+    while !holds() {
+        assert!(Instant::now() < until, "{what} did not come");
+        thread::sleep(Duration::from_millis(5));
+    }
+}
 
 /// `onetwo control` with its referee, vision and base station simulated by the test.
 struct Field {
@@ -340,7 +351,7 @@ fn halts_under(field: &mut Field, frames: &Receiver<(Instant, bool)>, flooded: V
     wait_for(frames, false, Instant::now());
     let before = field.memory();
     let sent = flood(field.vision, flooded, &end);
-    thread::sleep(Duration::from_secs(2));
+    eventually("the flood", || sent.load(Ordering::Relaxed) > FLOODED_MIN);
     let (mut took, mut stale, mut most) = (Vec::new(), Vec::new(), before);
     for _ in 0..8 {
         let since = controller.send_command(Wire::Halt);
@@ -434,32 +445,24 @@ fn finding_10_on_a_slow_line_halt_overtakes_snapshots_and_the_rate_is_told() {
     const RATE: f64 = 11_520.0;
     /// Bytes that may come before HALT: 0.2 s of the line; 22,000 before.
     const STALE_MAX: u64 = 2_304;
+    let began = Instant::now();
     let (station, line) = SerialPort::pair().expect("a pseudo terminal");
     let device = std::fs::read_link(format!("/proc/self/fd/{}", line.as_raw_fd())).expect("its name");
     let mut field = Field::start(&format!("serial:{}:115200", device.display()), &[]);
     let end = Arc::new(AtomicBool::new(false));
     let read = Arc::new(AtomicU64::new(0));
-    // The base station takes bytes as fast as the line delivers them; for each frame: HALT or not, and bytes
-    // so far.
+    // The base station takes what comes at once: the host alone keeps to the line's rate. For each frame: HALT or not,
+    // and bytes so far.
     let (send, frames) = channel();
     let (count, stop) = (read.clone(), end.clone());
     thread::spawn(move || {
         let (mut lines, mut robots) = (Lines::new(), Robots::new());
-        let (began, mut taken) = (Instant::now(), 0_u64);
         while !stop.load(Ordering::Relaxed) {
             for packet in robots.poll() {
                 let _ = station.write_all(&serial::line(&packet));
             }
-            let may = (began.elapsed().as_secs_f64() * RATE) as u64;
             let mut bytes = [0; 64];
-            let room = may.saturating_sub(taken).min(64) as usize;
-            if room == 0 {
-                thread::sleep(Duration::from_millis(2));
-                continue;
-            }
-            let got = station.read(&mut bytes[..room]).unwrap_or(0);
-            // Capacity that the line did not use is lost.
-            taken = if got == 0 { may } else { taken + got as u64 };
+            let got = station.read(&mut bytes).unwrap_or(0);
             count.fetch_add(got as u64, Ordering::Relaxed);
             for byte in &bytes[..got] {
                 if let Some(halt) = lines.push(*byte).and_then(|frame| robots.receive(&frame)) {
@@ -474,7 +477,11 @@ fn finding_10_on_a_slow_line_halt_overtakes_snapshots_and_the_rate_is_told() {
     controller.send_command(Wire::ForceStart);
     let arguments = field.wait_for_line(&["robots' line", "is too slow", "bit/s"]);
     eprintln!("{arguments}");
-    thread::sleep(Duration::from_secs(3));
+    let line_carries = |seconds: f64| {
+        let enough = read.load(Ordering::Relaxed) + (seconds * RATE) as u64;
+        eventually("the line's bytes", || read.load(Ordering::Relaxed) >= enough);
+    };
+    line_carries(2.0);
     let mut stale = Vec::new();
     for _ in 0..5 {
         while frames.try_recv().is_ok() {}
@@ -490,9 +497,11 @@ fn finding_10_on_a_slow_line_halt_overtakes_snapshots_and_the_rate_is_told() {
         };
         stale.push(at - before);
         controller.send_command(Wire::Stop);
-        thread::sleep(Duration::from_millis(500));
+        line_carries(0.4);
     }
+    let (carried, seconds) = (read.load(Ordering::Relaxed), began.elapsed().as_secs_f64());
     end.store(true, Ordering::Relaxed);
+    assert!((carried as f64) < RATE * seconds, "{carried} bytes in {seconds} s");
     stale.sort_unstable();
     eprintln!("bytes on the line from HALT's packet to HALT's frame, that frame included: {stale:?}");
     assert!(stale[stale.len() / 2] <= STALE_MAX, "{stale:?}");

@@ -4,11 +4,12 @@
 
 mod running;
 
+use std::fs;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use host::external::ANSWERS_WITHIN;
 use host::record::header::RecordingHeader;
@@ -17,7 +18,7 @@ use host::record::trace::{Reader, Record, RecordKind};
 use host::strategy::{OrderReason, Task};
 use protocol::frame::TeamKey;
 use running::controller::Controller;
-use running::{Running, free};
+use running::{PATIENCE, Running, free};
 use ssl::referee::Command as Wire;
 
 /// Images of both cameras within 20 ms, at 75 Hz: with the 80 ms of silence the 100 ms that
@@ -30,6 +31,60 @@ fn example() -> PathBuf {
 
 fn in_tmp(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+/// The example as a program of several lives, with its files in a directory. Answers of life N begin with N blanks, so
+/// that a trace tells which life gave them; the life after `killed` was made takes half a second to begin.
+struct Mortal {
+    directory: PathBuf,
+}
+
+impl Mortal {
+    fn new(name: &str) -> Self {
+        let directory = in_tmp(name);
+        let _ = fs::remove_dir_all(&directory);
+        fs::create_dir_all(&directory).expect("a directory");
+        let script = format!(
+            "cd {}\necho life >> lives\nn=$(wc -l < lives)\nrm killed 2>/dev/null && sleep 0.5\n\
+             sh -c 'echo $$ > process; exec python3 {}' | sed -u \"s/^/$(printf \"%${{n}}s\" '')/\" | tee -a answers\n",
+            directory.display(),
+            example().display()
+        );
+        fs::write(directory.join("program.sh"), script).expect("a file");
+        Self { directory }
+    }
+
+    fn command(&self) -> String {
+        format!("sh {}", self.directory.join("program.sh").display())
+    }
+
+    /// Waits until a life after that one has given a hundred answers; returns that life's number.
+    fn answering(&self, after: usize) -> usize {
+        let until = Instant::now() + PATIENCE;
+        loop {
+            let answers = fs::read_to_string(self.directory.join("answers")).unwrap_or_default();
+            let lives: Vec<_> = answers.lines().map(life).filter(|life| *life > after).collect();
+            let newest = lives.iter().max().copied().unwrap_or(0);
+            if lives.iter().filter(|life| **life == newest).count() > 100 {
+                return newest;
+            }
+            assert!(Instant::now() < until, "{} answers: is python3 installed?", lives.len());
+            thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    /// Kills the life that runs.
+    fn kill(&self) {
+        fs::write(self.directory.join("killed"), "").expect("a file");
+        let process = fs::read_to_string(self.directory.join("process")).expect("it was started");
+        let killed = Command::new("kill").args(["-9", process.trim()]).status().expect("kill");
+        assert!(killed.success(), "it ran");
+    }
+}
+
+/// The life that gave an answer.
+fn life(answer: &str) -> usize {
+    answer.len() - answer.trim_start().len()
 }
 
 /// The records of a trace, with its header.
@@ -46,30 +101,27 @@ fn robots_of_a_killed_strategy_stand_within_a_tenth_of_a_second_and_it_comes_bac
     let simulate = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--headless", "--referee", "none"];
     let mut simulator = Running::start(&[&simulate[..], &["--vision", &vision]].concat());
     let robots = format!("sim://127.0.0.1:{}", simulator.control_port());
-    let (number, stem) = (in_tmp("strategy.pid"), in_tmp("strategy"));
-    let _ = std::fs::remove_file(&number);
-    // Its process number is that of the shell that it replaces; it takes half a second to come back.
-    let (file, example) = (number.display().to_string(), example().display().to_string());
-    let program = format!("test -e {file} && sleep 0.5; echo $$ > {file}; exec python3 {example}");
-    let strategy = format!("cmd:sh -c '{program}'");
+    let (program, stem) = (Mortal::new("mortal-strategy"), in_tmp("strategy"));
     let control = ["control", "--headless", "--robots", &robots, "--vision", &vision, "--referee", &referee];
-    let more = ["--tracker", &free(), "--strategy", &strategy, "--record", &stem.display().to_string()];
-    let mut control = Running::start(&[&control[..], &more[..], &["--duration", "20"]].concat());
+    let more =
+        ["--tracker", &free(), "--strategy", &program.command(), "--record", &stem.display().to_string()];
+    let mut control = Running::start(&[&control[..], &more[..]].concat());
     let controller = Controller::new(&referee);
     control.wait_for("robots are received");
     controller.send(|packet| packet.command = Wire::Stop as i32);
     controller.send(|packet| packet.command = Wire::ForceStart as i32);
-    thread::sleep(Duration::from_secs(4));
-    let process = std::fs::read_to_string(&number).expect("the strategy was started");
-    let killed = Command::new("kill").args(["-9", process.trim()]).status().expect("kill");
-    assert!(killed.success(), "the strategy ran: is python3 installed?");
+    let killed = program.answering(0);
+    program.kill();
+    program.answering(killed);
+    control.interrupt();
     control.wait_for("strategy  started again");
     control.wait_for("robots halted");
 
     let (header, records) = records(&stem.with_extension("trace"));
-    let answers: Vec<_> =
-        records.iter().filter(|record| record.kind == RecordKind::Orders).map(|record| record.at).collect();
-    let gap = answers.windows(2).max_by_key(|pair| pair[1].since(pair[0]).0).expect("answers");
+    let life = |record: &&Record| life(&String::from_utf8_lossy(&record.bytes));
+    let answers: Vec<_> = records.iter().filter(|record| record.kind == RecordKind::Orders).collect();
+    let last = answers.iter().rposition(|record| life(record) <= killed).expect("answers before");
+    let gap = [last, last + 1].map(|index| answers.get(index).expect("answers before and after").at);
     let silence = gap[1].since(gap[0]).0;
     eprintln!("{} answers; the program was gone for {} ms", answers.len(), silence / 1_000);
     assert!(silence > 200_000, "{silence} µs");

@@ -61,7 +61,7 @@ fn reason(why: &OrderReason) -> String {
         OrderReason::Referee => "required by the referee's command".to_owned(),
         OrderReason::SoonestAtBall { seconds } => format!("soonest at the ball, in {seconds:.2} s"),
         OrderReason::OnBallLine { y } => {
-            format!("between the ball and our goal; the line ends {y:.2} m beside its middle")
+            format!("between the ball and our goal; aims {y:.2} m off the goal centre")
         }
         OrderReason::ClearsArea { room } => format!("only the keeper may play it there; {room:.2} m of room"),
         OrderReason::FreePlace { worth } => format!("the best free place, worth {worth:.2}"),

@@ -39,6 +39,7 @@ files! {
     "heat.js": SCRIPT,
     "words.js": SCRIPT,
     "layers.js": SCRIPT,
+    "signs.js": SCRIPT,
     "drag.js": SCRIPT,
     "why.js": SCRIPT,
     "explain.js": SCRIPT,

@@ -20,7 +20,8 @@ type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
 const ATTACKERS: usize = 300;
 /// Longer than any test: a limit of this length has no effect.
 const NEVER: Duration = Duration::from_hours(1);
-/// A short limit for a machine under load.
+/// A short limit, for what is to be closed. Genuine requests may miss it too on a loaded machine: they are sent until
+/// one is in time.
 const SOON: Duration = Duration::from_millis(300);
 /// Time after which a test gives up.
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -92,7 +93,8 @@ fn three_hundred_half_requests_are_closed_and_the_page_goes_on_answering() {
     let halves =
         ["", "G", "GET / HTTP/1.1\r\nHost: 127.0.0.1", "GET /socket HTTP/1.1\r\nUpgrade: websocket\r\n"];
     let held: Vec<_> = (0..ATTACKERS).map(|n| begin(at, halves[n % halves.len()])).collect();
-    assert!(get(at, "/").starts_with("HTTP/1.1 200"), "a viewer is answered while they hold on");
+    // A viewer is answered while they hold on.
+    wait_for(|| get(at, "/").starts_with("HTTP/1.1 200"));
     for stream in held {
         // The page may give the reason; it does not serve them.
         assert!(!rest(stream).contains("200 OK"));
@@ -131,7 +133,7 @@ fn missing_bodies_and_readers_that_never_read_are_closed() {
     let deaf = begin(at, &asks);
     thread::sleep(2 * SOON);
     let _ = rest(deaf);
-    assert!(get(at, "/").starts_with("HTTP/1.1 200"));
+    wait_for(|| get(at, "/").starts_with("HTTP/1.1 200"));
 }
 
 #[test]

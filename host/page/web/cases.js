@@ -40,11 +40,11 @@ export function showCases() {
   fill(tab, JSON.stringify(tables) + [...open], () => {
     const teams = ["blue", "yellow"].filter((team) => tables[team]);
     if (teams.length === 0) return el("p", { class: "muted" }, "Nothing is counted yet. Cases are counted in matches in which robots of ours play.");
-    return [...teams.flatMap((team) => teamPart(team, tables[team])), el("p", { class: "muted" }, LEGEND)];
+    return [...teams.flatMap((team) => teamPart(team, tables[team])), teams.some((team) => tables[team].cases.length > 0) ? el("p", { class: "muted" }, LEGEND) : null];
   });
 }
 
-const LEGEND = "n: retrieved. done: every robot finished its part. pass: arrived of kicked. goal, shot, lost: what followed until the possession ended, at the latest 10 s after the play; the best of them counts.";
+const LEGEND = "n: retrieved. done: every robot finished its part. pass: arrived of kicked. goal, shot, lost: what followed until the possession ended, at the latest 10 s after the play; the best of them counts. A case is dropped and chosen again as soon as the ball has left its scope: many retrieved and few done is common in fast play. Open a case to see how its plays ended.";
 
 function teamPart(team, table) {
   const done = table.cases.reduce((sum, line) => sum + line.finished, 0);

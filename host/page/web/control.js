@@ -58,7 +58,7 @@ function simulation() {
   return [
     el("h2", {}, "Time"),
     set(press("Pause", () => ({ ask: "pause", on: !store.latest?.paused }), { id: "pause" }), press("1 tick", () => ({ ask: "step", ticks: 1 }), { id: "step" }), press("10 ticks", () => ({ ask: "step", ticks: 10 }))),
-    set(el("label", {}, "Speed"), speed, el("span", { id: "speed-now" }), press("1 ×", () => ((speed.value = 0), { ask: "speed", factor: 1 }))),
+    set(el("label", {}, "Speed"), speed, el("span", { id: "speed-now" }), press("Clock's pace", () => ((speed.value = 0), { ask: "speed", factor: 1 }))),
     set(el("label", {}, "Seed"), seed, press("Restart", () => ({ ask: "restart", seed: Number(seed.value) }), { id: "restart" })),
     ...situations(press, set),
     ...snapshotPart(),

@@ -18,7 +18,7 @@ export function showDraft() {
     loadList();
     restore();
   }
-  fill(byId("bench-open"), JSON.stringify([bench.list?.names, bench.name]), opening);
+  fill(byId("bench-open"), JSON.stringify([bench.list?.names, bench.list?.saves, bench.name]), opening);
   const { sheet } = bench;
   for (const name of PARTS.slice(1)) byId(`bench-${name}`).hidden = !sheet;
   if (!sheet) return;
@@ -41,6 +41,7 @@ function opening() {
   const select = el("select", { id: "bench-case", "aria-label": "Case" }, ...names.map((name) => el("option", { value: name }, name)));
   if (names.includes(bench.name)) select.value = bench.name;
   return [
+    el("p", { class: "muted" }, `Edit a case on the field: open one, or draft one from this moment; move its parts with the pointer, check and rehearse it.${bench.list && !bench.list.saves ? " Nothing is saved here: start the program with --library DIRECTORY to write case files." : ""}`),
     set(select, press("Open", () => select.value && openCase(select.value), { id: "bench-open-case" })),
     set(el("span", { class: "muted" }, "Draft from this moment:"), ...["blue", "yellow"].map((team) => press(team, () => draft(team), { "data-draft": team }))),
   ];

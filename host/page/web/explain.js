@@ -41,7 +41,7 @@ async function settled(team) {
 async function open(title, decided, cycle, frozen) {
   try {
     const parts = [];
-    if (cycle?.state === "playing") parts.push(el("p", { id: "playing" }, `Playing ${cycle.case}${cycle.symmetry === "identity" ? "" : ` · ${cycle.symmetry}`}, cycle ${cycle.number}.`));
+    if (cycle?.state === "playing") parts.push(el("p", { id: "playing" }, `Playing ${cycle.case}${copyOf(cycle.symmetry)}, cycle ${cycle.number}.`));
     if (decided) parts.push(...await decision(decided));
     if (frozen) {
       const problem = await frozen();
@@ -101,7 +101,7 @@ function body(answer, problem, every) {
   const rows = [...answer.cases].sort((a, b) => ORDER[a.verdict] - ORDER[b.verdict] || (a.rank ?? 0) - (b.rank ?? 0) || margin(a) - margin(b));
   const shown = every ? rows : rows.slice(0, answer.candidates + NEAREST);
   const cells = shown.map((row) => [
-    row.rank ? String(row.rank) : "", `${row.case}${row.symmetry === "identity" ? "" : ` · ${row.symmetry}`}`,
+    row.rank ? String(row.rank) : "", `${row.case}${copyOf(row.symmetry)}`,
     [VERDICTS[row.verdict] ?? row.verdict, row.verdict === "candidate" ? "fine" : "bad"], verdictText(row),
   ]);
   const winner = rows.find((row) => row.id === answer.winner);
@@ -119,11 +119,15 @@ function body(answer, problem, every) {
 /** Verdicts in words. */
 export const VERDICTS = { candidate: "fits", path: "path blocked", opponents: "other opponents", thr_c: "too far", robots: "too few robots", ball: "ball out of scope" };
 
+const counted = (n, what) => `${n} ${what}${n === 1 ? "" : "s"}`;
+/** A mirror image in words: none for the case as authored, nor where the robot did not report it. */
+const copyOf = (symmetry) => (!symmetry || symmetry === "identity" ? "" : ` · ${symmetry}`);
+
 /** The margin of a verdict. */
 export function verdictText(row) {
   switch (row.verdict) {
     case "candidate":
-      return `${row.conditions} conditions, ${row.teammates} teammates, similarity ${number(row.similarity, 2)}, ${number(row.cost / 1000, 2)} m to travel in all`;
+      return `${counted(row.conditions, "condition")}, ${counted(row.teammates, "teammate")}, similarity ${number(row.similarity, 2)}, ${number(row.cost / 1000, 2)} m to travel in all`;
     case "path":
       return `opponent ${row.opponent} stands ${number(row.inside_mm, 0)} mm inside leg ${row.leg}`;
     case "opponents":

@@ -44,10 +44,10 @@ function vitals(robots) {
     el("td", {}, v.kicker ? "charged" : "not ready")));
   return [scroll("Robots and their links", el("table", { class: "tight" },
     el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "robot"), el("th", { scope: "col" }, "state"), head("V", "battery voltage"), head("RTT", "mean round-trip time of the radio, ms"), head("loss ↓", "frames lost on the way to the robot, %"), head("↑ %", "frames lost on the way from it, %"),
-      head("fr/s", "frames received a second"), head("tel/s", "telemetry received a second"), head("kbit/s", "frames of both directions"), head("tel", "since its last telemetry, ms"), head("heard", "since it was last heard, ms"), head("seen", "since a camera last saw it, ms"),
+      head("fr/s", "frames received a second"), head("tel/s", "telemetry received a second"), head("kbit/s", "frames of both directions"), head("report", "since its last telemetry, ms"), head("heard", "since it was last heard, ms"), head("seen", "since a camera last saw it, ms"),
       el("th", { scope: "col" }, "capacitor"))),
     el("tbody", {}, rows))),
-    el("p", { class: "muted" }, "RTT to kbit/s: over 1 s, below it the worst such second within 10 s. tel, heard, seen: ms since its telemetry, any frame, a camera. Capacitor voltage, temperatures and firmware version: not reported, telemetry has no field for them.")];
+    el("p", { class: "muted" }, "RTT to kbit/s: over 1 s, below it the worst such second within 10 s. report, heard, seen (the table scrolls sideways): ms since its telemetry, any frame, a camera. Capacitor voltage, temperatures and firmware version: not reported, telemetry has no field for them.")];
 }
 
 function cameras(list) {

@@ -5,6 +5,7 @@ import { byId } from "./dom.js";
 import { closeDialog, showKeys } from "./explain.js";
 import { toggleLayers } from "./layers.js";
 import { ask } from "./link.js";
+import { toggleSigns } from "./signs.js";
 import { changed, store } from "./store.js";
 import { goLive, jump, jumpGoal, mark, seek, time, toggle } from "./transport.js";
 
@@ -24,7 +25,7 @@ export function startKeys(camera, showTab) {
     "[": ["[ ]", "shown event before and after", () => jump(-1)], "]": ["", "", () => jump(1)],
     g: ["g", "5 s before the next goal; with shift the one before", () => jumpGoal(1)], G: ["", "", () => jumpGoal(-1)],
     b: ["b", "bookmark this moment", mark], c: ["c", "copy this moment's address", () => byId("link").click()],
-    y: ["y", "layers", toggleLayers], f: ["f", "turn the field round", flip], 0: ["0", "whole field", fit], "+": ["+ −", "zoom", () => zoom(1.25)], "-": ["", "", () => zoom(0.8)],
+    y: ["y", "layers", toggleLayers], k: ["k", "legend: what the marks on the field mean", toggleSigns], f: ["f", "turn the field round", flip], 0: ["0", "whole field", fit], "+": ["+ −", "zoom", () => zoom(1.25)], "-": ["", "", () => zoom(0.8)],
     1: ["1 – 7", "why, match, health, control, cases, workbench, parameters", () => showTab(TABS[0])], 2: ["", "", () => showTab(TABS[1])], 3: ["", "", () => showTab(TABS[2])], 4: ["", "", () => showTab(TABS[3])], 5: ["", "", () => showTab(TABS[4])], 6: ["", "", () => showTab(TABS[5])], 7: ["", "", () => showTab(TABS[6])],
     // On the workbench; `draft.js` takes them.
     "bench move": ["arrows", "on the workbench: the chosen part by 10 mm; with shift 100; Escape lets it go", () => {}], "bench undo": ["Ctrl+Z, Ctrl+Shift+Z, Ctrl+S", "on the workbench: undo, redo, save", () => {}],

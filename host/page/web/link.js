@@ -25,14 +25,25 @@ export function ask(request) {
 
 export const isOpen = () => socket?.readyState === WebSocket.OPEN;
 
+let underWay = 0;
+/** Requests over HTTP that are not answered yet. */
+export const requests = () => underWay;
+/** Time since the match was last heard, ms. */
+export const silence = () => performance.now() - heard;
+
+async function counted(request) {
+  underWay += 1;
+  return request.finally(() => (underWay -= 1));
+}
+
 export async function getJson(path) {
-  const answer = await fetch(path);
+  const answer = await counted(fetch(path));
   if (!answer.ok) throw new Error(await answer.text());
   return answer.json();
 }
 
 export async function post(path, body) {
-  const answer = await fetch(withToken(path), { method: "POST", body });
+  const answer = await counted(fetch(withToken(path), { method: "POST", body }));
   const text = await answer.text();
   if (!answer.ok) throw new Error(text);
   return text;
@@ -108,7 +119,7 @@ function connect() {
 function showLink() {
   const open = isOpen();
   const over = open && store.newest?.over;
-  const silent = open && !over && !store.state.recorded && store.newest && performance.now() - heard > SILENT;
+  const silent = open && !over && !store.state.recorded && store.newest && silence() > SILENT;
   const state = !open ? (store.newest ? "lost" : "waiting") : silent ? "lost" : "live";
   const words = { lost: open ? "silent" : "lost", waiting: "connecting", live: store.state.recorded ? "recording" : over ? "full time" : "connected" }[state];
   const badge = byId("connection");

@@ -12,10 +12,11 @@ import { drawFrame } from "./field.js";
 import { showHealth } from "./health.js";
 import { startKeys, TABS } from "./keys.js";
 import { all, setLayer, showLegend, startLayers } from "./layers.js";
-import { startLink } from "./link.js";
+import { requests, silence, startLink } from "./link.js";
 import { showBoard, showMatch } from "./match.js";
 import { showOver } from "./over.js";
 import { filmScene } from "./rehearse.js";
+import { startSigns } from "./signs.js";
 import { changed, on, recall, remember, store } from "./store.js";
 import { startTimeline } from "./timeline.js";
 import { advance, startTransport, time } from "./transport.js";
@@ -107,6 +108,7 @@ document.querySelectorAll("#tabs button").forEach((button) => button.addEventLis
 
 startColours();
 startLayers();
+startSigns();
 startTransport();
 startTimeline();
 startControl();
@@ -119,4 +121,4 @@ startLink();
 setInterval(() => changed("panels"), 1000);
 
 /** For tests and benches: what is shown now. */
-window.onetwo = { store, time, camera, bench, layers: all, setLayer, frames: () => frames, spent, workbench: workbenchState };
+window.onetwo = { store, time, camera, bench, layers: all, setLayer, frames: () => frames, requests, silence, refresh: () => changed("panels"), spent, workbench: workbenchState };

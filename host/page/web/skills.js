@@ -42,7 +42,7 @@ function choice() {
   };
   const tries = el("input", { type: "number", id: "skill-tries", min: "1", max: "500", value: String(chosen.tries), "aria-label": "Tries", onchange: (event) => (chosen.tries = Number(event.target.value)) });
   return [
-    select("skill", answer.choices.skills), "in", select("world", answer.choices.worlds), tries,
+    select("skill", answer.choices.skills), "in", select("world", answer.choices.worlds), tries, "times",
     el("button", { id: "skill-try", onclick: () => inquire({ do: "tries", plan: chosen }).catch(fail) }, "Try"),
     answer.report && !answer.report.over ? el("button", { id: "skill-stop", onclick: () => inquire({ do: "stop_tries" }).catch(fail) }, "Stop") : null,
   ].filter(Boolean);

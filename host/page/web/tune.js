@@ -56,7 +56,7 @@ const words = (value) => (value == null ? "" : String(value));
 /** The parameters of a team: those that can change while it plays, then those that are read at the start. */
 function team({ team: name, list, kicks, roll, test, file, toml }) {
   const [live, start] = [true, false].map((now) => list.filter((one) => one.live === now));
-  const rows = (some) => el("div", { class: "params" }, some.flatMap((one) => (one.each_robot ? robots(name, one, list) : [row(name, one)])));
+  const rows = (some) => el("div", { class: "params" }, some.flatMap((one) => (one.each_robot ? robots(name, one, list) : [row(name, one, true)])));
   const changed = list.filter((one) => one.value != null && !same(one.value, one.default)).length;
   return [
     el("h2", {}, el("span", { class: `chip ${name}` }, name[0].toUpperCase()), ` ${name}: ${changed} of ${list.length} changed`),
@@ -76,15 +76,16 @@ function robots(name, one, list) {
   if (one !== list.find(({ key }) => key === one.key)) return [];
   const own = new Map(list.filter(({ key, robot }) => key === one.key && robot != null).map((some) => [some.robot, some]));
   const on = (store.scene?.robots ?? []).filter((robot) => robot.team === name).map(({ id }) => id);
-  return [...new Set([...on, ...own.keys()])].sort((a, b) => a - b).map((robot) => row(name, own.get(robot) ?? { ...one, robot, value: null }));
+  return [...new Set([...on, ...own.keys()])].sort((a, b) => a - b).map((robot, i) => row(name, own.get(robot) ?? { ...one, robot, value: null }, i === 0));
 }
 
-function row(name, one) {
+/** Name, value and unit; what it means below, for the first robot of several alone. */
+function row(name, one, first) {
   const label = one.robot == null ? one.key : `${one.key} ${one.robot}`;
   const id = `tune-${name}-${label.replaceAll(/[ .]/g, "-")}`;
   const differs = one.value != null && !same(one.value, one.default);
   const range = one.range ? `, ${one.range[0]} to ${one.range[1]}${one.unit && ` ${one.unit}`}` : one.unit ? `, ${one.unit}` : "";
-  const about = el("small", { class: "muted", id: `${id}-about` }, `${one.meaning}${range}${one.default == null ? "" : `; default: ${one.default}`}`);
+  const about = el("small", { class: "muted", id: `${id}-about`, hidden: !first }, `${one.meaning}${range}${one.default == null ? "" : `; default: ${one.default}`}`);
   const value = one.live && mayChange() ? box(name, one, id) : el("output", { id, class: "value" }, words(one.value) || "–");
   return el("div", { class: differs ? "param differs" : "param", "data-key": label },
     el("label", { for: id }, label), value, el("span", { class: "unit" }, one.unit), about);
@@ -92,7 +93,7 @@ function row(name, one) {
 
 function box(name, one, id) {
   const isNumber = one.range != null;
-  const made = el("input", { id, type: isNumber ? "number" : "text", value: words(one.value), placeholder: words(one.default) || "default", "aria-describedby": `${id}-about`,
+  const made = el("input", { id, type: isNumber ? "number" : "text", value: words(one.value), title: words(one.value), placeholder: words(one.default) || "default", "aria-describedby": `${id}-about`,
     ...(isNumber ? { min: one.range[0], max: one.range[1], step: "any" } : {}) });
   let sent = made.value;
   const set = () => {

@@ -206,7 +206,7 @@ pub(super) const KICK: Parameter = Parameter {
     key: "calibration.kick",
     unit: "",
     range: Some(KICK_RANGE),
-    meaning: "how much faster than ordered a robot's balls leave: speed seen over speed ordered",
+    meaning: "kick gain: measured / ordered ball speed",
     left_out: Some(("1", "1.06")),
     live: true,
     value: Holds::EachRobot(|config, id| {
@@ -262,7 +262,7 @@ pub const PARAMETERS: [Parameter; 20] = [
     usual("referee", "multicast group and port of the referee", |c| Some(text_of(&c.referee))),
     optional(
         "referee_source",
-        "only referee obeyed: address or identifier",
+        "accept only this referee: address or identifier",
         ("the strictest", "\"192.168.1.5\""),
         |c| c.referee_source.as_ref().map(|pin| text_of(pin)),
     ),

@@ -101,8 +101,8 @@ impl Watch {
         lines.extend(came.filter(|line| !line.is_empty()));
         let silence = host.listener().silence(now);
         let waits = format!(
-            "waiting for the referee at {} ({}): robots halt until then; is the game controller running, and publishes it there \
-             (--referee)?",
+            "waiting for the referee at {} ({}): robots halt until then; is the game controller running and publishing \
+             there (--referee)?",
             config.referee, self.referee.via
         );
         let never = matches!(silence, Silence::Never(_));

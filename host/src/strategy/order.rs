@@ -235,7 +235,7 @@ impl fmt::Display for OrderReason {
             Self::Referee => f.write_str("required by the referee's command"),
             Self::SoonestAtBall { seconds } => write!(f, "soonest at the ball, in {seconds:.2} s"),
             Self::OnBallLine { y } => {
-                write!(f, "on the line from the ball to our goal, {y:.2} m beside its middle")
+                write!(f, "on the line from the ball to our goal, {y:.2} m off the goal centre")
             }
             Self::ClearsArea { room } => write!(f, "only the keeper may play it there; {room:.2} m of room"),
             Self::FreePlace { worth } => write!(f, "the best free place, worth {worth:.2}"),

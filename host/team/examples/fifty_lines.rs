@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! cargo build --release -p onetwo-team --example fifty_lines
-//! onetwo play --blue-strategy cmd:target/release/examples/fifty_lines
+//! onetwo play --blue-strategy target/release/examples/fifty_lines
 //! ```
 
 use team::{Planner, Strategy, StrategyAnswer, StrategyShape, StrategyTask, StrategyView};

@@ -2,7 +2,7 @@
 """A team in Python with the standard library alone: the nearest robot shoots where the goal is open, and passes
 to the teammate that is freest where it is not; the others do what onetwo's coach orders.
 
-    onetwo play --blue-strategy "cmd:python3 host/team/examples/python_team.py"
+    onetwo play --blue-strategy "python3 host/team/examples/python_team.py"
 
 Lines of JSON, attack frame (docs/strategy-protocol.md): we attack towards +x; m, m/s, rad.
 """

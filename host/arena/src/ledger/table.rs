@@ -146,11 +146,11 @@ impl CaseTable {
         }
     }
 
-    /// `decisions: 41 to play a case, 17 of them finished; 12 to play none`.
+    /// `cases: 41 started, 17 completed; 12 decisions without a case`.
     pub fn summary(&self) -> String {
         let finished: u32 = self.cases.iter().map(|line| line.all.finished).sum();
         let Self { retrieved, no_case, .. } = self;
-        format!("decisions: {retrieved} to play a case, {finished} of them finished; {no_case} to play none")
+        format!("cases: {retrieved} started, {finished} completed; {no_case} decisions without a case")
     }
 
     /// Writes a column: for each case and number of opponents its counts,

@@ -157,7 +157,7 @@ pub(crate) fn robot_ids(text: &str) -> Result<RobotIds, String> {
     if ids.is_empty() { Err(wrong()) } else { Ok(RobotIds(ids)) }
 }
 
-/// How much faster than ordered a robot's kicks are.
+/// Kick gain of a robot: measured / ordered ball speed.
 pub(crate) fn kick(text: &str) -> Result<Calibration, String> {
     let parts =
         text.split_once('=').and_then(|(robot, kick)| Some((robot.parse().ok()?, kick.parse().ok()?)));

@@ -99,11 +99,11 @@ pub(crate) struct ControlArgs {
     /// announced to the game controller.
     #[arg(long, value_name = "ADDRESS:PORT")]
     game_controller: Option<SocketAddr>,
-    /// A program that gives the robots' orders, such as `cmd:python3 my_team.py`: it gets the view as a line
+    /// A program that gives the robots' orders, such as `python3 my_team.py`: it gets the view as a line
     /// of JSON and answers with one (docs/strategy-protocol.md). While it does not answer, robots stand.
-    #[arg(long, value_name = "cmd:COMMAND")]
+    #[arg(long, value_name = "COMMAND")]
     strategy: Option<String>,
-    /// How much faster than ordered a robot's kicks are, such as 3=1.06; may be repeated.
+    /// Kick gain of a robot, measured / ordered ball speed, such as 3=1.06; may be repeated.
     #[arg(long = "kick", value_name = "ROBOT=FACTOR", value_parser = kick)]
     kicks: Vec<Calibration>,
     /// Keep what is learned of kickers, latencies and the ball in this file, which may be the team.toml: its

@@ -55,7 +55,7 @@ pub(super) struct MatchesArgs {
     team: MatchTeam,
     /// The program of the team `strategy`, which can be named as team or opponent
     /// (docs/strategy-protocol.md).
-    #[arg(long, value_name = "cmd:COMMAND")]
+    #[arg(long, value_name = "COMMAND")]
     strategy: Option<String>,
     /// Opponents, with commas between: reactive, marking, zone (these three by default), idle, ours, round-1
     /// (ours by thresholds and cases, whatever is usual), or ours with other tactics, such as

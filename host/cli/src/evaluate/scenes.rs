@@ -134,7 +134,7 @@ fn run_drills(args: &ScenesArgs) -> Result<ExitCode, Failure> {
     drop(line);
     let csv = to_csv(&rows).map_err(EvaluationError::from)?;
     if let Some(file) = &args.csv {
-        write(file, &csv)?;
+        write(file, FileKind::Csv, &csv)?;
     }
     let results = drill_results(&plan, &rows);
     if !args.json {

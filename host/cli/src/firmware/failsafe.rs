@@ -45,8 +45,8 @@ impl Cause {
             Self::Tipped => "it lies on its side",
             Self::Spinning => "it turns faster than 30 rad/s",
             Self::Battery => "the battery is below 14 V",
-            Self::WantsNaN => "the brain wants a number that is none",
-            Self::MeasuresNaN => "the wheels measure a number that is none",
+            Self::WantsNaN => "the brain outputs NaN",
+            Self::MeasuresNaN => "the encoders report NaN",
         }
     }
 }

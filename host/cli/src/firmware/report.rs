@@ -44,8 +44,8 @@ fn text(all: &[Known], seconds: f64) -> String {
     let _ = writeln!(
         text,
         "Stack and steps are those of eight trials of the first paper on legs (seed 1, one for each of its cells) and of a match of six \
-         against six on wheels, {seconds:.0} s, as images under QEMU. The image that runs by its own clock has no simulator to count \
-         for it; its stack is told and held by the test `qemu_free`.\n"
+         against six on wheels, {seconds:.0} s, as images under QEMU. Steps of the image that runs by its own clock are not \
+         counted; its stack limit is checked by the test `qemu_free`.\n"
     );
     budgets(all, &mut text);
     text += SHARES_HEAD;

@@ -2,8 +2,6 @@
 //! or set, and axe-core finds nothing, where `AXE_CORE` names its file (`npm pack axe-core`,
 //! `package/axe.min.js`).
 
-use std::time::Duration;
-
 use page_browser::{Browser, Tab};
 
 use crate::no_errors;
@@ -32,8 +30,12 @@ fn play() -> Program {
 fn show(tab: &mut Tab<'_>, name: &str) {
     tab.eval(&format!("document.querySelector('[data-tab={name}]').click()")).unwrap();
     tab.wait(&format!("!document.getElementById('tab-{name}').hidden")).unwrap();
-    // Panels follow ten times a second, lists from the program once.
-    std::thread::sleep(Duration::from_millis(1500));
+    // The first round asks the program for lists, the second shows the answers.
+    for _ in 0..2 {
+        tab.eval("onetwo.refresh()").unwrap();
+        tab.wait("onetwo.requests() === 0").unwrap();
+    }
+    tab.eval("onetwo.refresh()").unwrap();
 }
 
 #[test]

@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Duration;
 
 use page_browser::{Browser, Tab};
 
@@ -101,11 +100,11 @@ fn a_moment_becomes_a_case_by_hand_and_keys_that_the_next_match_plays() {
 
     // A decision that two robots at least were there for: the same seed comes to it again.
     tab.wait("onetwo.store.matchEvents.some((e) => e.problem)").unwrap();
-    let found = (0..120).any(|_| {
-        std::thread::sleep(Duration::from_secs(1));
-        tab.eval(MOMENT).unwrap().as_bool() == Some(true)
-    });
-    assert!(found, "no decision had two robots");
+    while tab.eval(MOMENT).unwrap().as_bool() != Some(true) {
+        let played = number(&mut tab, "onetwo.store.latest.t");
+        assert!(played < 240.0, "no decision had two robots");
+        tab.wait(&format!("onetwo.store.latest.t > {played} + 2")).unwrap();
+    }
     tab.key("6").unwrap();
     tab.wait("document.querySelector('[data-draft=blue]')").unwrap();
     tab.wait("!onetwo.time.live && Math.abs(onetwo.time.at - window.moment.t) < 0.01").unwrap();

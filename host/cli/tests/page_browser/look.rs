@@ -1,8 +1,6 @@
 //! `look`: what the page looks like and how it is handled: a match that is over, a robot's card, drags, goals
 //! and teams, maps, lists, keys, contrast, and a narrow screen.
 
-use std::time::Duration;
-
 use page_browser::{Browser, Tab};
 
 use super::program::Program;
@@ -45,10 +43,10 @@ fn a_match_that_is_over_says_so_and_offers_what_next() {
     let over = "!document.getElementById('over').hidden && /^Full time [0-9]+ : [0-9]+/.test(document.getElementById('over').textContent)";
     tab.wait(over).unwrap();
     // No scene comes any more, and that is no fault: longer than a silent match is waited for.
-    std::thread::sleep(Duration::from_secs(4));
+    tab.wait("onetwo.silence() > 4000").unwrap();
     assert!(is(&mut tab, over) && is(&mut tab, "document.getElementById('lost').hidden"));
     assert!(is(&mut tab, "document.getElementById('connection').textContent === 'full time'"));
-    assert!(is(&mut tab, "document.getElementById('phase-now').textContent === 'full time'"));
+    tab.wait("document.getElementById('phase-now').textContent === 'full time'").unwrap();
     // Once more from its beginning.
     tab.click("#again").unwrap();
     tab.wait("!onetwo.time.live && onetwo.store.scene.t < 3 && document.getElementById('over').hidden")
@@ -138,9 +136,10 @@ fn drags(tab: &mut Tab<'_>) {
     // With time the host sees it there itself.
     tab.key("4").unwrap();
     for _ in 0..3 {
+        let before = number(tab, "onetwo.store.latest.t");
         tab.eval("[...document.querySelectorAll('#tab-control button')].find((b) => b.textContent === '10 ticks').click()")
             .unwrap();
-        std::thread::sleep(Duration::from_millis(300));
+        tab.wait(&format!("onetwo.store.latest.t > {before} + 0.099")).unwrap();
     }
     tab.wait(
         "(() => { const r = onetwo.store.latest.robots.find((r) => r.team === 'blue' && r.id === 2); return Math.hypot(r.at[0] - 1.5, r.at[1] + 1.2) < 0.3; })()")
@@ -223,7 +222,7 @@ fn contrast(tab: &mut Tab<'_>) {
       const marks = ['blue-line', 'yellow-line', 'ball', 'case', 'forbidden', 'good', 'plain', 'accent', 'warn', 'bad'];
       const pairs = marks.flatMap((mark) => ['surface', 'margin', 'panel'].map((ground) => [mark, ground, 3]));
       const words = ['text', 'dim'].flatMap((word) => ['panel', 'back', 'raised'].map((ground) => [word, ground, 4.5]));
-      return [...pairs, ['line', 'surface', 3], ...words, ['blue-ink', 'blue', 4.5], ['yellow-ink', 'yellow', 4.5]]
+      return [...pairs, ['line', 'surface', 3], ...words, ['blue-ink', 'blue', 4.5], ['yellow-ink', 'yellow', 4.5], ['bad-ink', 'bad', 4.5]]
         .filter(([a, b, least]) => ratio(a, b) < least).map(([a, b]) => `${a} on ${b}: ${ratio(a, b).toFixed(2)}`).join(', ');
     })()";
     for theme in ["dark", "light"] {

@@ -15,8 +15,6 @@ mod testday;
 mod touch;
 mod tune;
 
-use std::time::Duration;
-
 use page_browser::{Browser, Tab};
 use program::Program;
 
@@ -150,17 +148,9 @@ fn explained_on_the_field(tab: &mut Tab<'_>) {
     tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, false))").unwrap();
 }
 
-/// Retries a few times: everything moves.
+/// Waits until the script answers so: what is pointed at moves, and is not there in each scene.
 fn onetwo_prints(tab: &mut Tab<'_>, script: &str, description: &str) {
-    let mut output = String::new();
-    for _ in 0..40 {
-        tab.eval(script).unwrap().as_str().unwrap_or_default().clone_into(&mut output);
-        if output.contains(description) {
-            return;
-        }
-        std::thread::sleep(Duration::from_millis(100));
-    }
-    panic!("{description}: not in {output}");
+    tab.wait(&format!("({script}).includes('{description}')")).unwrap();
 }
 
 /// Pause, single step, drag the ball, restart.

@@ -77,6 +77,13 @@ impl Running {
         }
     }
 
+    /// Ends it as Ctrl-C does.
+    #[allow(dead_code, reason = "each test program takes what it needs of it")]
+    pub(crate) fn interrupt(&self) {
+        let sent = Command::new("kill").args(["-INT", &self.process.id().to_string()]).status();
+        assert!(sent.is_ok_and(|status| status.success()), "it has ended already");
+    }
+
     /// The control port that the simulator prints.
     pub(crate) fn control_port(&mut self) -> u16 {
         let (_, line) = self.wait_for("control  ");

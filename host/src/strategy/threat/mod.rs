@@ -156,7 +156,7 @@ impl fmt::Display for Guards {
         match *self {
             Self::FirstLevel { open, uncovered, .. } => {
                 let [open, uncovered] = [open, uncovered].map(f32::to_degrees);
-                write!(f, "{open:.0}° of our goal are open to the ball, {uncovered:.0}° of them uncovered")
+                write!(f, "shot angle {open:.0}°, {uncovered:.0}° not covered")
             }
             Self::Spare => f.write_str("one primary defender suffices; beside it"),
             Self::SecondLevel { opponent, blocks, rank, open, time_to_shoot } => {
