@@ -32,7 +32,7 @@ impl fmt::Display for VisionPort {
         match self {
             Self::Nothing => f.write_str(
                 "waiting for vision: no packet has come; is SSL-Vision or a simulator running, and sends it there? Cameras send to \
-                 224.5.23.2:10006, simulators to 224.5.23.2:10020 (--vision, --interface); `onetwo simulate` is one",
+                 224.5.23.2:10006, simulators to 224.5.23.2:10020 (--vision, --interface), `onetwo simulate` among them",
             ),
             Self::Foreign { packets } => write!(
                 f,

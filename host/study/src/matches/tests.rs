@@ -44,6 +44,7 @@ impl Directory {
             settings: RetrievalSettings::default(),
             program: "test".to_owned(),
             names: CaseNames::default(),
+            refusals: Refusals::default(),
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| matches.play_shard(shard, &self.0.join(shard.file_name()), GO_ON)).unwrap()
@@ -95,6 +96,7 @@ fn evaluations_of_different_worlds_differ_and_a_plan_keeps_its_world() {
             settings: RetrievalSettings::default(),
             program: "test".to_owned(),
             names: CaseNames::default(),
+            refusals: Refusals::default(),
         }
     };
     let named: WorldPlan = "grsim".parse().unwrap();
@@ -349,6 +351,7 @@ fn a_host_retrieves_from_the_library_that_its_robots_have() {
         settings: RetrievalSettings::default(),
         program: "test".to_owned(),
         names: CaseNames::default(),
+        refusals: Refusals::default(),
     };
     let played = matches.play_all(&|| ()).unwrap();
     let retrieved: Vec<_> =
