@@ -35,14 +35,14 @@ mod change;
 pub mod parameters;
 mod text;
 
-use std::net::{IpAddr, SocketAddr};
+use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use foreign::excerpt;
 use protocol::RobotId;
 use rules::{Colour, League};
 use serde::Deserialize;
-use ssl::net::addresses;
+use ssl::net::{addresses, split_address};
 
 use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::Tactics;
@@ -71,8 +71,8 @@ pub struct TeamSettings {
     pub league: Option<String>,
     /// The keeper's number, 0–15.
     pub keeper: Option<u8>,
-    /// Address of the interface on which multicast is received.
-    pub interface: Option<IpAddr>,
+    /// The interface on which multicast is received: its name or IPv4 address.
+    pub interface: Option<String>,
     /// Address of the robots: see [`RobotLink`].
     pub robots: Option<String>,
     /// The file of the team's key.
@@ -80,16 +80,20 @@ pub struct TeamSettings {
     /// Real robots may be commanded with the key of zeros.
     pub insecure_zero_key: Option<bool>,
     /// Multicast group and port of vision.
+    #[serde(default, deserialize_with = "text::address")]
     pub vision: Option<SocketAddr>,
     /// Multicast group and port of the referee.
+    #[serde(default, deserialize_with = "text::address")]
     pub referee: Option<SocketAddr>,
     /// The only referee that robots obey: see [`SourcePin`].
     pub referee_source: Option<String>,
     /// `halt` or `go-on`: see [`OnSilence`].
     pub referee_silence: Option<String>,
     /// Address to which tracker packets are sent.
+    #[serde(default, deserialize_with = "text::destination")]
     pub tracker: Option<SocketAddr>,
     /// The game controller's port for teams.
+    #[serde(default, deserialize_with = "text::team_port")]
     pub game_controller: Option<SocketAddr>,
     /// Command of the strategy that gives the orders ([`crate::external`]).
     pub strategy: Option<String>,
@@ -153,8 +157,9 @@ pub struct TeamConfig {
     pub league: League,
     /// The keeper, until the referee names another.
     pub keeper: RobotId,
-    /// Address of the interface on which multicast is received; `None`: every interface that supports it.
-    pub interface: Option<IpAddr>,
+    /// The interface on which multicast is received, by name or address; `None`: every interface that supports
+    /// it.
+    pub interface: Option<String>,
     /// Link to the robots.
     pub robots: RobotLink,
     /// The file of the team's key.
@@ -340,11 +345,12 @@ impl RobotLink {
             )
         };
         if let Some(host) = text.strip_prefix("sim://") {
-            return if host.is_empty() { Err(wrong()) } else { Ok(Self::Simulator(host.to_owned())) };
+            let known =
+                split_address(host, Some(addresses::SIMULATOR_PORT)).is_some_and(|(_, port)| port > 0);
+            return if known { Ok(Self::Simulator(host.to_owned())) } else { Err(wrong()) };
         }
         if let Some(address) = text.strip_prefix("udp://") {
-            let (host, port) = address.rsplit_once(':').ok_or_else(wrong)?;
-            let known = !host.is_empty() && port.parse::<u16>().is_ok();
+            let known = split_address(address, None).is_some_and(|(_, port)| port > 0);
             return if known { Ok(Self::Udp(address.to_owned())) } else { Err(wrong()) };
         }
         let line = text.strip_prefix("serial:").ok_or_else(wrong)?;
@@ -401,7 +407,17 @@ mod tests {
         assert!(refused("league = \"four-legged\"").to_string().contains("division-b"));
         assert!(refused("[[calibration]]\nrobot = 1\nkick = 9.0").to_string().contains("calibration.kick"));
         assert!(refused("[ball]\nroll = 9.0").to_string().contains("ball.roll"));
-        for link in ["", "tcp://x:1", "udp://x", "udp://:1", "sim://", "serial:"] {
+        for link in [
+            "",
+            "tcp://x:1",
+            "udp://x",
+            "udp://:1",
+            "sim://",
+            "sim://x:0",
+            "udp://x:0",
+            "udp://:::9",
+            "serial:",
+        ] {
             assert!(RobotLink::parse(link).unwrap_err().to_string().contains("sim://HOST"), "{link}");
         }
     }

@@ -102,6 +102,8 @@ pub struct Listener {
     still_until: Instant,
     none: (Game, GameState),
     counts: RefereeCounts,
+    /// The newest command, where its number is unknown.
+    unknown: Option<i32>,
     started: Instant,
 }
 
@@ -131,6 +133,7 @@ impl Listener {
             still_until: Instant(0),
             none: (Game::default(), GameState::new()),
             counts: RefereeCounts::default(),
+            unknown: None,
             started: now,
         }
     }
@@ -155,6 +158,11 @@ impl Listener {
     /// Numbers of packets by verdict.
     pub fn counts(&self) -> RefereeCounts {
         self.counts
+    }
+
+    /// Number of the newest command, where it is unknown and the referee is heard.
+    pub fn unknown_command(&self, now: Instant) -> Option<i32> {
+        self.unknown.filter(|_| matches!(self.silence(now), Silence::Received(_)))
     }
 
     /// The source that is followed, if one is.
@@ -269,6 +277,9 @@ impl Listener {
             Outcome::Taken(taken) => {
                 self.counts.steps += u64::from(taken.clock_stepped.is_some() || taken.counter_restarted);
                 self.counts.unknown += u64::from(taken.unknown.is_some());
+                if taken.command.is_some() {
+                    self.unknown = taken.unknown;
+                }
             }
         }
     }

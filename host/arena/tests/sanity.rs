@@ -4,7 +4,7 @@
 use arena::game::{Game, GameConfig, NoWatcher};
 use geometry::{Angle, Point, Pose};
 use hil_sim::NativeBackend;
-use host::health_checks::{Finding, HealthChecks, SideEvidence};
+use host::health_checks::{Fault, HealthChecks, SideEvidence};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
@@ -15,7 +15,7 @@ fn play(
     config: &GameConfig,
     seconds: u32,
     mut hand: impl FnMut(&mut Game<'static>, u32),
-    mut see: impl FnMut(u32, Colour, Vec<Finding>),
+    mut see: impl FnMut(u32, Colour, Vec<Fault>),
 ) {
     let base = match config.league {
         League::DivisionB => case_library::division_b(),
@@ -62,8 +62,8 @@ fn a_healthy_match_of_either_division_raises_no_warning() {
 fn first(
     config: &GameConfig,
     hand: impl FnMut(&mut Game<'static>, u32),
-    is: impl Fn(&Finding) -> bool,
-) -> [Option<(u32, Finding)>; 2] {
+    is: impl Fn(&Fault) -> bool,
+) -> [Option<(u32, Fault)>; 2] {
     let mut first = [None, None];
     play(config, 12, hand, |ms, colour, found| {
         let place = &mut first[colour as usize];
@@ -86,11 +86,11 @@ fn a_robot_more_than_the_league_allows_is_reported_by_both_hosts_within_two_seco
                 game.put_robot(who, Pose { position: at, heading: Angle::ZERO });
             }
         };
-        let found = first(&config, hand, |found| matches!(found, Finding::Robots(_)));
+        let found = first(&config, hand, |found| matches!(found, Fault::Robots(_)));
         for (colour, found) in [Colour::Yellow, Colour::Blue].into_iter().zip(found) {
             let (ms, found) = found.expect("it is found");
             assert!((5_000..=7_000).contains(&ms), "{}: {ms} ms", league.name());
-            let Finding::Robots(many) = &found else { unreachable!() };
+            let Fault::Robots(many) = &found else { unreachable!() };
             assert_eq!((many.team, many.ours), (Colour::Blue, colour == Colour::Blue));
             assert_eq!((many.on_field, many.allowed), (usize::from(number) + 1, usize::from(number)));
             assert!(found.to_string().contains("allows"), "{found}");
@@ -119,11 +119,11 @@ fn teams_that_start_at_each_others_goals_are_reported_within_two_seconds() {
                 }
             }
         };
-        let found = first(&config, hand, |found| matches!(found, Finding::Side(_)));
+        let found = first(&config, hand, |found| matches!(found, Fault::Side(_)));
         for found in found {
             let (ms, found) = found.expect("it is found");
             assert!(ms <= 2_000, "{}: {ms} ms", league.name());
-            let Finding::Side(wrong) = found else { unreachable!() };
+            let Fault::Side(wrong) = found else { unreachable!() };
             assert!(
                 matches!(wrong.evidence, SideEvidence::OurKeeper(_) | SideEvidence::Halves(..)),
                 "{wrong:?}"

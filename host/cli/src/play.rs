@@ -9,7 +9,7 @@ use std::sync::atomic::Ordering;
 
 use arena::CaseNames;
 use arena::cases::LibraryHandle;
-use arena::game::{self, Game, GameConfig, GameReport, MatchLog, Watcher, Watchers};
+use arena::game::{self, Game, GameConfig, GameReport, MatchLog, StrategyReport, Watcher, Watchers};
 use clap::Args;
 use feed::{CaseExplanations, End, MatchObserver, MatchRunner, RunSettings, SharedLibrary};
 use hil_sim::NativeBackend;
@@ -145,7 +145,18 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         write_report(&mut out, args, &report).map_err(Failure::Output)?;
     }
     out.flush().map_err(Failure::Output)?;
-    let Some((signal, code)) = signal() else { return Ok(ExitCode::SUCCESS) };
+    let strategies = [("blue", &report.metrics.blue), ("yellow", &report.metrics.yellow)];
+    let mut never_played = false;
+    for (name, metrics) in strategies {
+        let Some(strategy) = &metrics.strategy else { continue };
+        never_played |= strategy.never_played();
+        if let Some(warning) = strategy.warning().filter(|_| args.json || strategy.never_played()) {
+            note!("warning  {name}: {warning}");
+        }
+    }
+    let Some((signal, code)) = signal() else {
+        return Ok(if never_played { ExitCode::FAILURE } else { ExitCode::SUCCESS });
+    };
     note!(
         "ended by {signal} after {:.2} s of {} s; what was played is above",
         report.duration_s,
@@ -247,7 +258,7 @@ fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> i
         ("blue", &report.metrics.blue, &report.fouls.blue),
         ("yellow", &report.metrics.yellow, &report.fouls.yellow),
     ];
-    for (name, metrics, fouls) in teams {
+    for (name, metrics, fouls) in &teams {
         let fouls: Vec<_> = fouls.iter().map(|(kind, n)| format!("{n} {}", kind.replace('_', " "))).collect();
         let fouls = if fouls.is_empty() { "no fouls".to_owned() } else { fouls.join(", ") };
         writeln!(
@@ -256,6 +267,11 @@ fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> i
             metrics.shots, metrics.chances, metrics.passes, metrics.possession_s
         )?;
         writeln!(out, "{name}: {}", metrics.cases.summary())?;
+    }
+    for (name, metrics, _) in teams {
+        if let Some(warning) = metrics.strategy.as_ref().and_then(StrategyReport::warning) {
+            writeln!(out, "{name}: {warning}")?;
+        }
     }
     for block in &report.blocked {
         let phase = format!("blocked for {:.1} s from {:.1} s", block.lasted_s, block.from_s);

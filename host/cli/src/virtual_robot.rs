@@ -3,7 +3,7 @@
 //! does not run.
 
 use std::io::{self, BufRead as _};
-use std::net::{SocketAddr, ToSocketAddrs as _};
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use thiserror::Error;
 use virtual_robot::{Options, parent_gone, run as play};
 
 use crate::Failure;
-use crate::args::parsers::{colour, goal, host_address, league, robot_id};
+use crate::args::parsers::{colour, destination, goal, league, robot_id};
 use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::output::note;
 
@@ -38,7 +38,7 @@ pub(crate) struct VirtualRobotArgs {
     #[arg(long, value_parser = league, default_value = "division-b")]
     league: League,
     /// Its host, as HOST:PORT.
-    #[arg(long, value_parser = host_address)]
+    #[arg(long, value_parser = destination)]
     host: SocketAddr,
     /// The simulator, as HOST or HOST:PORT; without a port the league's for its team, 10301 blue, 10302
     /// yellow.
@@ -110,15 +110,14 @@ fn simulator(text: &str, team: Colour) -> Result<SocketAddr, Failure> {
         Colour::Blue => ssl::net::addresses::ROBOTS_BLUE_PORT,
         Colour::Yellow => ssl::net::addresses::ROBOTS_YELLOW_PORT,
     };
-    let with_port = text.to_socket_addrs().or_else(|_| (text, port).to_socket_addrs());
-    let found = with_port.ok().and_then(|mut found| found.next());
-    found.ok_or_else(|| RobotError::UnknownSimulator(text.to_owned()).into())
+    ssl::net::resolve_destination(text, Some(port))
+        .map_err(|error| RobotError::UnknownSimulator(text.to_owned(), error).into())
 }
 
 #[derive(Debug, Error)]
 enum RobotError {
     #[error("--with-parent: standard input begins with {0}, no key")]
     NoKey(String),
-    #[error("unknown host in --simulator {0}; give HOST or HOST:PORT")]
-    UnknownSimulator(String),
+    #[error("unknown host in --simulator {0}: {1}")]
+    UnknownSimulator(String, String),
 }

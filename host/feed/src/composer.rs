@@ -9,7 +9,7 @@ use casebase::CaseBase;
 use hil_sim::small_size::World as Truth;
 use hil_sim::small_size::referee::InternalReferee;
 use host::Host;
-use host::health_checks::HealthChecks;
+use host::health_checks::{Finding, HealthChecks, Since};
 use host::referee::Game;
 use host::world::{Ball, Robot, World};
 use page::{
@@ -72,6 +72,7 @@ pub struct Composer {
     clocks: Clocks,
     faults: Faults,
     health_checks: [HealthChecks; 2],
+    since: [Since; 2],
     possession: Possession,
     overlay_builder: OverlayBuilder,
     match_events: Vec<MatchEvent>,
@@ -96,6 +97,7 @@ impl Composer {
             clocks: Clocks::default(),
             faults: Faults::default(),
             health_checks: Default::default(),
+            since: Default::default(),
             possession: Possession::default(),
             overlay_builder: OverlayBuilder::default(),
             match_events: Vec::new(),
@@ -131,22 +133,21 @@ impl Composer {
                 self.match_events.push(MatchEvent { team, ..MatchEvent::fault(t, fault) });
             }
         }
-        let (mut alarms, mut alarmed) = (Vec::new(), Vec::new());
+        let (mut alarms, mut alarmed, mut findings) = (Vec::new(), Vec::new(), Vec::new());
         for host in moment.hosts {
             let us = host.settings().us;
-            let found = self.health_checks[us as usize].look(now, host);
-            for found in &found {
+            let faults = self.health_checks[us as usize].look(now, host);
+            for found in self.since[us as usize].date(now, faults) {
                 // The text changes with its figures; the heading stays.
-                let (source, heading) = (format!("{} host", us.label()), found.heading());
+                let (source, heading) = (format!("{} host", us.label()), found.fault.heading());
                 let matter = format!("{source}: {heading}");
                 if !self.alarmed.contains(&matter) {
-                    self.log.add(LogLevel::Alarm, &source, Some(t), &format!("{heading}: {found}"));
+                    self.log.add(LogLevel::Alarm, &source, Some(t), &format!("{heading}: {}", found.fault));
                 }
                 alarmed.push(matter);
+                alarms.push(format!("{source}: {heading}: {}", found.fault));
+                findings.push(Finding::to_json(&found));
             }
-            alarms.extend(
-                found.iter().map(|found| format!("{} host: {}: {found}", us.label(), found.heading())),
-            );
         }
         self.alarmed = alarmed;
         if let Some(referee) = moment.referee {
@@ -212,6 +213,7 @@ impl Composer {
             cameras: self.cameras.look(t),
             gauges,
             alarms,
+            findings,
             ..scene_of(t, &World::default(), &field)
         };
         let input = OverlayInput {

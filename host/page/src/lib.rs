@@ -26,6 +26,7 @@ mod http;
 mod limits;
 mod match_event;
 mod page;
+mod places;
 mod problem;
 mod program_log;
 mod request;

@@ -36,6 +36,9 @@ pub struct Scene {
     /// Faults that an operator should act on now, each in a sentence.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alarms: Vec<String>,
+    /// The same as objects: part, what, evidence, remedy, and since when, s.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<serde_json::Value>,
     /// Number of events up to now.
     pub happened: u64,
     /// True while a viewer has paused the match.

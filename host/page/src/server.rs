@@ -7,13 +7,14 @@
 
 use std::io;
 use std::net::{SocketAddr, TcpListener, TcpStream};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::guard;
 use crate::http::{Answer, Head, NoRequest, Status, Wire};
 use crate::limits::Seat;
+use crate::places::{Place, Places};
 use crate::request::UserRequest;
 use crate::routes;
 use crate::shared::{Ask, Shared};
@@ -71,45 +72,24 @@ impl Drop for Server {
     }
 }
 
-/// Connections that are being served, viewers' sockets aside.
-#[derive(Debug, Default)]
-struct Places {
-    taken: Mutex<usize>,
-    freed: Condvar,
-}
-
-impl Places {
-    /// Waits until fewer than `most` are taken, and takes one.
-    fn take(self: &Arc<Self>, most: usize) -> Place {
-        let taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);
-        let waited = self.freed.wait_while(taken, |taken| *taken >= most);
-        *waited.unwrap_or_else(PoisonError::into_inner) += 1;
-        Place(self.clone())
-    }
-}
-
-struct Place(Arc<Places>);
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        *self.0.taken.lock().unwrap_or_else(PoisonError::into_inner) -= 1;
-        self.0.freed.notify_one();
-    }
-}
-
-/// Serves connection by connection, no more at once than the limits allow.
+/// Takes connection by connection, and serves no more at once than the limits allow.
 fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
     let places = Arc::new(Places::default());
-    loop {
-        let place = places.take(shared.settings.limits.connections);
-        let accepted = listener.accept();
-        if shared.viewers.have_ended() {
-            return;
+    let (served, page) = (places.clone(), shared.clone());
+    let server = thread::Builder::new().spawn(move || serve_all(&served, &page));
+    while !shared.viewers.have_ended() && server.is_ok() {
+        match listener.accept() {
+            Ok((stream, from)) => places.queue(stream, from.ip().to_canonical()),
+            Err(_) => thread::sleep(ACCEPT_RETRY),
         }
-        let Ok((stream, _)) = accepted else {
-            thread::sleep(ACCEPT_RETRY);
-            continue;
-        };
+    }
+    places.end();
+}
+
+/// Serves the connections that have a place, each on a thread of its own.
+fn serve_all(places: &Arc<Places>, shared: &Arc<Shared>) {
+    let is_token = |request: &[u8]| shared.shows_token(request);
+    while let Some((stream, place)) = places.next(shared.settings.limits.connections, is_token) {
         // Scenes are small and needed at once.
         let _ = stream.set_nodelay(true);
         let shared = shared.clone();

@@ -39,6 +39,13 @@ impl Shared {
         self.settings.token.as_ref().is_none_or(|token| brought.is_some_and(|brought| token.is(brought)))
     }
 
+    /// Whether the beginning of a request shows the token, in its address line or a header.
+    pub(crate) fn shows_token(&self, request: &[u8]) -> bool {
+        let text = String::from_utf8_lossy(request);
+        let mut words = text.split(|c: char| c.is_whitespace() || "?&=".contains(c));
+        self.settings.token.as_ref().is_some_and(|token| words.any(|word| token.is(word)))
+    }
+
     /// Computes an answer within that time on a thread of its own, not on the connection's: it cannot be
     /// cancelled.
     pub(crate) fn in_time<T: Send + 'static>(

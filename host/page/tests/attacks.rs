@@ -219,3 +219,24 @@ fn a_refusal_goes_to_the_viewer_that_requested() {
     other.send(Message::text("no request")).unwrap();
     assert!(refused(&mut other).contains("no request"), "the other one hears of its own alone");
 }
+
+#[test]
+fn a_machine_that_holds_every_place_keeps_nobody_else_and_no_token_out() {
+    let token = Token::random().unwrap();
+    let limits = Limits { header: NEVER, connection: NEVER, connections: 8, ..Limits::default() };
+    let page = open(limits, Some(token.clone()));
+    let at = page.address();
+    let held: Vec<_> = (0..200).map(|_| begin(at, "GET / HTTP/1.1\r\n")).collect();
+    thread::sleep(SOON);
+    // The same machine with the token.
+    let asks = format!("GET /?token={} HTTP/1.1\r\nHost: {at}\r\nConnection: close\r\n\r\n", token.as_str());
+    assert!(rest(begin(at, &asks)).starts_with("HTTP/1.1 200"), "with the token");
+    // Another machine: this one by another of its addresses.
+    let other = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();
+    other.bind(&std::net::SocketAddr::from(([127, 0, 0, 7], 0)).into()).unwrap();
+    other.connect(&at.into()).unwrap();
+    let mut other: std::net::TcpStream = other.into();
+    other.write_all(format!("GET / HTTP/1.1\r\nHost: {at}\r\nConnection: close\r\n\r\n").as_bytes()).unwrap();
+    assert!(rest(other).starts_with("HTTP/1.1 200"), "from another address");
+    drop(held);
+}

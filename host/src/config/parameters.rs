@@ -248,8 +248,8 @@ pub const PARAMETERS: [Parameter; 20] = [
             Some(Value::from(i64::from(c.keeper.number())))
         })
     },
-    optional("interface", "interface for multicast", ("every interface", "\"192.168.1.7\""), |c| {
-        c.interface.map(|ip| text_of(&ip))
+    optional("interface", "interface for multicast", ("every interface", "\"eth0\""), |c| {
+        c.interface.as_ref().map(|name| text_of(name))
     }),
     usual("robots", "sim://HOST, udp://HOST:PORT or serial:DEVICE[:BAUD]", |c| Some(text_of(&c.robots))),
     optional("key_file", "32 hexadecimal digits", ("zeros, for sim:// only", "\"team.key\""), |c| {

@@ -2,6 +2,11 @@
 //! `onetwo control --print-config` and `--init`.
 
 use std::fmt::{self, Write as _};
+use std::net::SocketAddr;
+
+use serde::de::Error as _;
+use serde::{Deserialize as _, Deserializer};
+use ssl::net::{addresses, resolve, resolve_destination};
 
 use super::parameters::{KICK, PARAMETERS};
 use super::{RobotLink, TeamConfig};
@@ -51,6 +56,29 @@ impl fmt::Display for RobotLink {
             Self::Serial { device, baud } => write!(f, "serial:{device}:{baud}"),
         }
     }
+}
+
+/// An address to receive on, in a file of settings.
+pub(super) fn address<'de, D: Deserializer<'de>>(file: D) -> Result<Option<SocketAddr>, D::Error> {
+    read(file, |text| resolve(text, None))
+}
+
+/// An address to send to.
+pub(super) fn destination<'de, D: Deserializer<'de>>(file: D) -> Result<Option<SocketAddr>, D::Error> {
+    read(file, |text| resolve_destination(text, None))
+}
+
+/// A game controller's port for teams.
+pub(super) fn team_port<'de, D: Deserializer<'de>>(file: D) -> Result<Option<SocketAddr>, D::Error> {
+    read(file, |text| resolve_destination(text, Some(addresses::TEAM_PORT)))
+}
+
+fn read<'de, D: Deserializer<'de>>(
+    file: D,
+    resolve: fn(&str) -> Result<SocketAddr, String>,
+) -> Result<Option<SocketAddr>, D::Error> {
+    let text = String::deserialize(file)?;
+    resolve(&text).map(Some).map_err(D::Error::custom)
 }
 
 #[cfg(test)]

@@ -8,6 +8,11 @@ use std::sync::Arc;
 pub trait StrategyLink: Send {
     /// The answer to a view, as [`super::StrategyAnswer`]; `None`: there is none now.
     fn answer(&mut self, view: &str) -> Option<String>;
+
+    /// Why it will not answer any more, once that is certain.
+    fn failure(&self) -> Option<String> {
+        None
+    }
 }
 
 impl<F: FnMut(&str) -> Option<String> + Send> StrategyLink for F {

@@ -41,8 +41,12 @@ pub(crate) struct External {
     /// The newest answer, and when it came.
     answer: Option<(Instant, Vec<(RobotId, Task)>)>,
     drawing: StrategyDrawing,
+    used: u64,
     refused: u64,
     error: Option<AnswerError>,
+    /// Since when it is asked without an answer, and whether it ever answered.
+    asked: Option<Instant>,
+    answered: bool,
 }
 
 impl External {
@@ -54,19 +58,23 @@ impl External {
             line: None,
             answer: None,
             drawing: StrategyDrawing::default(),
+            used: 0,
             refused: 0,
             error: None,
+            asked: None,
+            answered: false,
         }
     }
 
     /// The orders to be sent now, by the newest answer; the view is offered to the program.
     pub(crate) fn plan(&mut self, view: &View, usual: Orders) -> Orders {
         if matches!(view.phase, Phase::Halt | Phase::Timeout(_)) {
-            (self.newest, self.line) = (None, None);
+            (self.newest, self.line, self.asked) = (None, None, None);
             return usual;
         }
         // Numbers and strings: JSON can represent all of it.
         self.line = serde_json::to_string(&StrategyView::of(self.league, view, &usual)).ok();
+        self.asked = self.asked.or(Some(view.now));
         let orders = self.orders(view, &usual);
         self.newest = Some((view.clone(), usual));
         orders
@@ -74,9 +82,11 @@ impl External {
 
     /// Takes an answer; the orders to be sent now, unless nothing was asked.
     pub(crate) fn answered(&mut self, now: Instant, line: &[u8]) -> Result<Option<Orders>, AnswerError> {
+        (self.asked, self.answered) = (None, true);
         match StrategyAnswer::read(line) {
             Ok((tasks, drawing)) => {
                 self.answer = Some((now, tasks));
+                self.used += 1;
                 self.drawing = drawing;
             }
             Err(error) => {
@@ -104,9 +114,19 @@ impl External {
         &self.drawing
     }
 
+    /// Number of answers that were followed.
+    pub(crate) fn used(&self) -> u64 {
+        self.used
+    }
+
     /// Answers that were refused, and why the last one was.
     pub(crate) fn refused(&self) -> (u64, Option<&AnswerError>) {
         (self.refused, self.error.as_ref())
+    }
+
+    /// Since when it is asked without an answer, and whether it ever answered.
+    pub(crate) fn unanswered(&self) -> Option<(Instant, bool)> {
+        self.asked.map(|asked| (asked, self.answered))
     }
 
     fn orders(&self, view: &View, usual: &Orders) -> Orders {

@@ -35,11 +35,11 @@ impl fmt::Display for TooManyRobots {
         let (whose, remedy) = if self.ours {
             ("ours", "take the others off the field, or the referee counts a foul")
         } else {
-            ("theirs", "tell the referee; none is led by this host")
+            ("theirs", "tell the referee, none is led by this host")
         };
         write!(
             f,
-            "{on_field} {} robots ({whose}) are on the field, {} allows {allowed}: {remedy} (another division: --league)",
+            "{on_field} {} robots ({whose}) are on the field, {} allows {allowed}: {remedy} (or another --league)",
             team.label(),
             league.name()
         )

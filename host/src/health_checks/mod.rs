@@ -1,5 +1,6 @@
-//! `health_checks`: checks field, network and computer against the host's settings; each finding has its
-//! evidence and a remedy as text. Sans-IO; times on the host's clock.
+//! `health_checks`: checks field, team, network and computer against the host's settings. A [`Fault`] is what does
+//! not fit; a [`Finding`] is a fault with the time since which it lasts, its evidence and its remedy: one list for
+//! terminal, page and reports. Sans-IO; times on the host's clock.
 //!
 //! | module | finds |
 //! |---|---|
@@ -8,15 +9,22 @@
 //! | `second_host` | another host of the same team number |
 //! | `port` | no camera frames on vision's port, or another program's packets |
 //! | `stall` | a stall of this computer, vision or the radio |
+//! | `strategy` | a strategy in another program that does not answer, or whose answers are refused |
+//! | `team` | names and colours, keeper, division, placements, robots that radio or vision alone knows |
+//! | `vision` | a second vision; clocks, delays and rates of cameras |
 //!
 //! [`HealthChecks::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds
 //! of its cause and for as long as that lasts. A match without a fault has none.
 
 mod field;
+mod finding;
 mod port;
 mod second_host;
 mod side;
 mod stall;
+mod strategy;
+mod team;
+mod vision;
 
 /// [`HealthChecks::look`] is called at least this often, so that "within two seconds" holds.
 pub const LOOK_EVERY_MAX: Duration = Duration::millis(200);
@@ -34,16 +42,22 @@ use std::fmt;
 use protocol::{Duration, Instant};
 
 use crate::Host;
+use crate::referee::Warning;
+use crate::tracking::senders::SecondVision;
 
 pub use field::{OtherField, TooManyRobots};
+pub use finding::{Finding, Since};
 pub use port::VisionPort;
 pub use second_host::SecondHost;
 pub use side::{SideEvidence, WrongSide};
 pub use stall::Stall;
+pub use strategy::StrategyFault;
+pub use team::TeamFault;
+pub use vision::CameraFault;
 
-/// A deviation from the settings.
+/// Something that does not fit.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Finding {
+pub enum Fault {
     /// More robots than the league allows.
     Robots(TooManyRobots),
     /// Vision sends a field that is not the league's.
@@ -54,46 +68,109 @@ pub enum Finding {
     SecondHost(SecondHost),
     /// No camera frames come on vision's port.
     VisionPort(VisionPort),
+    /// Two programs send vision of one camera.
+    SecondVision(SecondVision),
+    /// A camera's clock, delay or rate.
+    Camera(CameraFault),
+    /// Our team by referee, vision and radio.
+    Team(TeamFault),
+    /// The strategy in another program.
+    Strategy(StrategyFault),
+    /// The referee's sources.
+    Referee(Warning),
     /// The host, vision or the radio has stalled.
     Stall(Stall),
+    /// Datagrams came faster than they can be used.
+    Flood {
+        /// What was dropped.
+        what: &'static str,
+        /// Number of datagrams.
+        dropped: u64,
+    },
+    /// The line to the base station is too slow; the text has the rate that it needs.
+    SlowLine(String),
+    /// A source that was never received; the text says how it is received.
+    Missing(String),
 }
 
-impl Finding {
-    /// Identity without numbers: findings with the same text are one finding at several times.
+impl Fault {
+    /// Identity without numbers: faults with the same text are one fault at several times.
     pub fn matter(&self) -> String {
         match self {
             Self::Robots(found) => format!("robots {:?}", found.team),
-            Self::Field(_) => "field".to_owned(),
-            Self::Side(_) => "side".to_owned(),
-            Self::SecondHost(_) => "second host".to_owned(),
-            Self::VisionPort(_) => "vision port".to_owned(),
             Self::Stall(stall) => format!("stall {}", stall.place()),
+            Self::Camera(fault) => fault.matter(),
+            Self::Team(fault) => fault.matter(),
+            Self::Referee(warning) => warning.matter(),
+            Self::Flood { what, .. } => format!("flood of {what}"),
+            Self::Missing(text) => text.clone(),
+            _ => self.what().to_owned(),
         }
     }
 
-    /// The label that heads its line: `field`, `robots`, `vision`, `radio` or `host`.
+    /// What does not fit, in two or three words.
+    pub const fn what(&self) -> &'static str {
+        match self {
+            Self::Robots(_) => "too many robots",
+            Self::Field(_) => "other field",
+            Self::Side(_) => "wrong side",
+            Self::SecondHost(_) => "second host",
+            Self::VisionPort(_) => "no vision",
+            Self::SecondVision(_) => "second vision",
+            Self::Camera(CameraFault::Clock { .. }) => "camera's clock",
+            Self::Camera(CameraFault::Late { .. }) => "late camera",
+            Self::Camera(CameraFault::Unused { .. }) => "unused camera",
+            Self::Camera(CameraFault::Slow { .. }) => "slow camera",
+            Self::Team(TeamFault::OtherColour { .. }) => "name and colour",
+            Self::Team(TeamFault::NoKeeper { .. }) => "no keeper",
+            Self::Team(TeamFault::Division { .. }) => "other division",
+            Self::Team(TeamFault::Placement { .. }) => "impossible placement",
+            Self::Team(TeamFault::Command { .. }) => "unknown command",
+            Self::Team(TeamFault::Unseen(_)) => "unseen robot",
+            Self::Team(TeamFault::Unheard(_)) => "unheard robot",
+            Self::Strategy(StrategyFault::Refused { .. }) => "refused answers",
+            Self::Strategy(StrategyFault::Silent { .. }) => "silent strategy",
+            Self::Referee(_) => "referee's sources",
+            Self::Stall(_) => "stall",
+            Self::Flood { .. } => "flood",
+            Self::SlowLine(_) => "slow line",
+            Self::Missing(_) => "missing source",
+        }
+    }
+
+    /// The label that heads its line.
     pub const fn heading(&self) -> &'static str {
         match self {
             Self::Robots(_) => "robots",
             Self::Field(_) | Self::Side(_) => "field",
             Self::SecondHost(_) => "radio",
-            Self::VisionPort(_) => "vision",
+            Self::VisionPort(_) | Self::SecondVision(_) | Self::Camera(_) => "vision",
+            Self::Team(fault) => fault.heading(),
+            Self::Strategy(_) => "strategy",
+            Self::Referee(_) => "referee",
             Self::Stall(stall) => stall.place(),
+            Self::Flood { .. } => "network",
+            Self::SlowLine(_) => "line",
+            Self::Missing(_) => "waiting",
         }
     }
 
     /// Whether it is repeated while it lasts.
     pub const fn is_urgent(&self) -> bool {
         match self {
-            Self::Robots(_) | Self::Side(_) | Self::SecondHost(_) | Self::Stall(_) => true,
-            // A laboratory's own field, or a camera that is not switched on yet: reported once.
+            // A laboratory's own field, a camera that is not switched on yet, clocks that are taken out: reported
+            // once.
             Self::Field(found) => found.fits.is_some(),
-            Self::VisionPort(_) => false,
+            Self::Camera(fault) => matches!(fault, CameraFault::Unused { .. } | CameraFault::Slow { .. }),
+            Self::Team(fault) => fault.is_urgent(),
+            Self::Referee(warning) => warning.is_urgent(),
+            Self::VisionPort(_) | Self::Missing(_) => false,
+            _ => true,
         }
     }
 }
 
-impl fmt::Display for Finding {
+impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Robots(found) => found.fmt(f),
@@ -101,7 +178,17 @@ impl fmt::Display for Finding {
             Self::Side(found) => found.fmt(f),
             Self::SecondHost(found) => found.fmt(f),
             Self::VisionPort(found) => found.fmt(f),
+            Self::SecondVision(found) => found.fmt(f),
+            Self::Camera(found) => found.fmt(f),
+            Self::Team(found) => found.fmt(f),
+            Self::Strategy(found) => found.fmt(f),
+            Self::Referee(found) => found.fmt(f),
             Self::Stall(found) => found.fmt(f),
+            Self::Flood { what, dropped } => write!(
+                f,
+                "{dropped} {what} came faster than they can be used, the oldest were dropped; does another program flood the port?"
+            ),
+            Self::SlowLine(text) | Self::Missing(text) => f.write_str(text),
         }
     }
 }
@@ -114,32 +201,45 @@ pub struct HealthChecks {
     side: side::Sides,
     port: port::Port,
     stalls: stall::Stalls,
+    team: team::TeamChecks,
+    answers: strategy::Answers,
+    /// Our team's name, where it is known.
+    name: Option<String>,
 }
 
 impl HealthChecks {
+    /// The checks for a team of that name.
+    #[must_use]
+    pub fn of_team(self, name: &str) -> Self {
+        Self { name: Some(name.to_owned()), ..self }
+    }
+
     /// The host's loop runs now. A program that calls this calls it at least every 100 ms: a longer pause is
     /// a stall of the computer. A simulation in virtual time does not call it.
     pub fn ran(&mut self, now: Instant) {
         self.stalls.ran(now);
     }
 
-    /// The findings that persist now.
-    pub fn look(&mut self, now: Instant, host: &Host) -> Vec<Finding> {
+    /// The faults that persist now.
+    pub fn look(&mut self, now: Instant, host: &Host) -> Vec<Fault> {
         if self.looked.is_some_and(|last| now < last) {
             // A recording that is rewound, or a match that restarts.
-            *self = Self::default();
+            *self = Self { name: self.name.take(), ..Self::default() };
         }
         self.looked = Some(now);
         let mut found = Vec::new();
         let sees = host.last_camera_frame().is_some_and(|at| now.since(at) < FRAME_AGE_MAX);
         let reported =
             host.announced_field().and_then(|reported| field::other_field(host.settings().league, reported));
-        found.extend(reported.map(Finding::Field));
-        found.extend(self.crowd.look(now, host, sees).map(Finding::Robots));
-        found.extend(self.side.look(now, host, sees).map(Finding::Side));
-        found.extend(second_host::look(now, host).map(Finding::SecondHost));
-        found.extend(self.port.look(now, host).map(Finding::VisionPort));
-        found.extend(self.stalls.look(now, host).map(Finding::Stall));
+        found.extend(reported.map(Fault::Field));
+        found.extend(self.crowd.look(now, host, sees).map(Fault::Robots));
+        found.extend(self.side.look(now, host, sees).map(Fault::Side));
+        found.extend(second_host::look(now, host).map(Fault::SecondHost));
+        found.extend(self.port.look(now, host).map(Fault::VisionPort));
+        found.extend(vision::look(now, host).map(Fault::Camera));
+        found.extend(self.team.look(now, host, self.name.as_deref(), sees).into_iter().map(Fault::Team));
+        found.extend(self.answers.look(now, host).map(Fault::Strategy));
+        found.extend(self.stalls.look(now, host).map(Fault::Stall));
         found
     }
 }

@@ -29,7 +29,7 @@ fn second_host(mut report: impl FnMut(u64, &mut Host)) -> Option<(u64, SecondHos
     (0..8_000).step_by(100).find_map(|ms| {
         report(ms, &mut host);
         sanity.look(Instant(ms * 1_000), &host).into_iter().find_map(|found| match found {
-            Finding::SecondHost(found) => Some((ms, found)),
+            Fault::SecondHost(found) => Some((ms, found)),
             _ => None,
         })
     })
@@ -122,7 +122,105 @@ fn another_programs_packets_on_visions_port_are_a_finding_within_two_seconds() {
     let (ms, found) = first.unwrap();
     assert!(ms <= 2_000, "{ms} ms");
     assert!(
-        matches!(found[..], [Finding::VisionPort(VisionPort::Foreign { packets })] if packets > 40),
+        matches!(found[..], [Fault::VisionPort(VisionPort::Foreign { packets })] if packets > 40),
         "{found:?}"
     );
+}
+
+/// One fault of each kind, in the order of the table in docs/start.md.
+fn one_of_each() -> Vec<Fault> {
+    use crate::referee::{SenderAddress, SourceKey, Warning};
+    let [one, two] = [4_711, 5_012].map(|port| std::net::SocketAddr::from(([10, 0, 0, 2], port)));
+    let key = |address| SourceKey { identifier: None, address: SenderAddress::new(address) };
+    let (us, league) = (Colour::Blue, League::DivisionB);
+    let text = |what: &str| what.to_owned();
+    let side = WrongSide {
+        defending: geometry::GoalEnd::Negative,
+        reported: true,
+        evidence: SideEvidence::OurKeeper(id()),
+    };
+    let refused = StrategyFault::Refused { answers: 3, reason: text("unknown key kik") };
+    let silent = StrategyFault::Silent { since: Duration::millis(2_000), ever: false };
+    let other = TeamFault::OtherColour { name: text("A"), us, other: text("B") };
+    vec![
+        Fault::VisionPort(VisionPort::Nothing),
+        Fault::VisionPort(VisionPort::Foreign { packets: 3 }),
+        Fault::VisionPort(VisionPort::NoFrames),
+        Fault::SecondVision(SecondVision { camera: 0, followed: one, other: two }),
+        Fault::Camera(CameraFault::Clock { camera: 1, ahead_ms: -120 }),
+        Fault::Camera(CameraFault::Late { camera: 1, by_ms: 80 }),
+        Fault::Camera(CameraFault::Unused { camera: 1, by_ms: 900 }),
+        Fault::Camera(CameraFault::Slow { camera: 0, rate: 3.2 }),
+        Fault::Field(OtherField { league, announced: [12.0, 9.0], fits: Some(League::DivisionA) }),
+        Fault::Team(TeamFault::Division { allowed: 11, league, of_league: 6 }),
+        Fault::Robots(TooManyRobots { team: us, ours: true, on_field: 7, allowed: 6, league }),
+        Fault::Side(side),
+        Fault::Team(other),
+        Fault::Team(TeamFault::NoKeeper { keeper: id() }),
+        Fault::Team(TeamFault::Placement { place: Some(geometry::Point::new(7.0, 0.0)) }),
+        Fault::Team(TeamFault::Placement { place: None }),
+        Fault::Team(TeamFault::Command { number: 18 }),
+        Fault::Team(TeamFault::Unseen(id())),
+        Fault::Team(TeamFault::Unheard(id())),
+        Fault::SecondHost(SecondHost::Received { epoch: 7 }),
+        Fault::Referee(Warning::Several { followed: key(one), other: key(two) }),
+        Fault::Strategy(refused),
+        Fault::Strategy(silent),
+        Fault::Stall(Stall::Host { lasted: Duration::millis(400) }),
+        Fault::Stall(Stall::Vision { since: Duration::millis(400) }),
+        Fault::Stall(Stall::RadioUp { since: Duration::millis(400) }),
+        Fault::Flood { what: "vision packets", dropped: 4 },
+        Fault::SlowLine(text("/dev/ttyACM0 is too slow: use fewer robots")),
+        Fault::Missing(text("waiting for robots: none is received; are they on?")),
+    ]
+}
+
+#[test]
+fn every_finding_has_what_evidence_and_remedy_and_says_since_when() {
+    let faults = one_of_each();
+    let mut since = Since::default();
+    let first = since.date(Instant(1_000_000), faults.clone());
+    let again = since.date(Instant(2_000_000), faults);
+    for (first, again) in first.iter().zip(&again) {
+        let json = again.to_json();
+        for key in ["part", "what", "evidence", "remedy"] {
+            assert!(json[key].as_str().is_some_and(|text| !text.trim().is_empty()), "{key}: {json}");
+        }
+        assert_eq!(json["since_s"], 1.0, "{json}");
+        assert_eq!(first.fault.matter(), again.fault.matter());
+        let line = again.to_string();
+        assert!(line.contains(&again.remedy()) && line.contains(&again.evidence()), "{line}");
+    }
+    let matters: std::collections::BTreeSet<_> = first.iter().map(|finding| finding.fault.matter()).collect();
+    // Three states of vision's port and two of a placement are one matter each.
+    assert_eq!(matters.len(), first.len() - 3, "{matters:?}");
+}
+
+#[test]
+fn each_finding_is_in_the_table_of_the_start_page() {
+    let page = include_str!("../../../docs/start.md");
+    for fault in one_of_each() {
+        // Lines of links and missing sources have their own words there.
+        if matches!(fault, Fault::SlowLine(_) | Fault::Missing(_)) {
+            continue;
+        }
+        let text = fault.to_string();
+        let known = page.lines().filter(|line| line.starts_with("| `")).any(|line| {
+            let messages = line.split('`').skip(1).step_by(2);
+            let mut words = messages.map(|message| {
+                let plain = message.trim_start_matches(['…', ' ']);
+                plain.split(|c: char| c.is_ascii_digit() || "(:…".contains(c)).next().unwrap_or(plain).trim()
+            });
+            words.any(|words| words.len() > 3 && text.contains(words.trim_end_matches([' ', 'N'])))
+        });
+        let counted = [
+            "packets came",
+            "answers of the strategy",
+            "vision packets",
+            "blue robots",
+            "placed without a place",
+        ];
+        let counted = counted.iter().any(|words| text.contains(words) && page.contains(words));
+        assert!(known || counted || text.contains("without a place"), "not in docs/start.md: {text}");
+    }
 }

@@ -2,10 +2,10 @@
 //! a drill.
 
 use protocol::host::{Directive, HostCommand, RuleRole};
-use protocol::{Instant, RobotId};
+use protocol::{Duration, Instant, RobotId};
 
 use super::{Host, InputVerdict};
-use crate::external::{AnswerError, StrategyDrawing};
+use crate::external::{AnswerError, External, StrategyDrawing};
 use crate::radio::RadioSituation;
 use crate::strategy::Flip;
 use crate::strategy::view::ViewGame;
@@ -23,9 +23,21 @@ impl Host {
         Some((Flip::defending(self.our_game().defending), drawing))
     }
 
+    /// Number of answers of the strategy in another program that were followed.
+    pub fn used_answers(&self) -> u64 {
+        self.external.as_ref().map_or(0, External::used)
+    }
+
     /// Number of refused answers of the strategy in another program, and the last one's error.
     pub fn refused_answers(&self) -> (u64, Option<&AnswerError>) {
         self.external.as_ref().map_or((0, None), |external| external.refused())
+    }
+
+    /// Time for which the strategy in another program has been asked without an answer, and whether it ever
+    /// answered; `None` where nothing is asked.
+    pub fn unanswered(&self, now: Instant) -> Option<(Duration, bool)> {
+        let (asked, ever) = self.external.as_ref()?.unanswered()?;
+        Some((now.since(asked), ever))
     }
 
     /// The orders, or the drill's in their place, as robots get them.

@@ -327,6 +327,12 @@ impl Source {
         taken.command = Some((command, received));
     }
 
+    /// Whether it is the same referee by another network: with its identifier and its packets.
+    pub(super) fn is_same_referee(&self, other: &Self) -> bool {
+        let sent = |(stamped, _): &(Stamped, Instant)| other.recent.iter().any(|(known, _)| known == stamped);
+        self.key.identifier == other.key.identifier && self.recent.iter().any(sent)
+    }
+
     fn remember(&mut self, came: Stamped, now: Instant) {
         if self.recent.len() == PACKETS_KEPT {
             self.recent.pop_front();

@@ -12,7 +12,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use protocol::frame::TeamKey;
-use rules::Colour;
+use rules::{Colour, Phase};
 use ssl::Message;
 use ssl::log::MessageKind;
 use ssl::net::{Interfaces, NetSender};
@@ -29,6 +29,8 @@ use crate::record::header::RecordingHeader;
 use crate::record::{BackgroundRecorder, Recorder};
 use crate::referee::team_port::TeamPortRequest;
 use crate::shell::{Link, Outbox, StrategyProcess};
+use crate::strategy::Task;
+use crate::tracking::senders::{Admission, ExpectedRobots, VisionSenders};
 use crate::tracking::{Publisher, VisionVerdict};
 use crate::{Host, HostSettings, Input, InputVerdict};
 
@@ -93,10 +95,11 @@ pub(super) fn run(
         recording: Ok(()),
         trace_ended: false,
         watch,
-        alarms: Alarms::default(),
+        senders: VisionSenders::new(config.colour),
+        alarms: Alarms::new(&config.name),
         radio_alarms: RadioAlarms::default(),
         publisher: publisher(config),
-        sender: NetSender::new(config.tracker, config.interface.map(|ip| ip.to_string()).as_deref()),
+        sender: NetSender::new(config.tracker, config.interface.as_deref()),
         counts: Counts::default(),
         lines: Vec::new(),
         operator,
@@ -160,7 +163,7 @@ impl Threads {
     ) -> (Channels, Self) {
         let (mail, out) = (Arc::new(Inbox::new()), Arc::new(Mutex::new(Outbox::default())));
         let end = Arc::new(AtomicBool::new(false));
-        let by = config.interface.map_or(Interfaces::All, |ip| Interfaces::These(vec![ip.to_string()]));
+        let by = config.interface.clone().map_or(Interfaces::All, |name| Interfaces::These(vec![name]));
         let mut threads = vec![
             threads::receive(Source::Vision, config.vision, by.clone(), mail.clone(), end.clone()),
             threads::receive(Source::Referee, config.referee, by, mail.clone(), end.clone()),
@@ -206,6 +209,7 @@ pub(super) struct EventLoop<'o> {
     /// Whether the end of the trace was reported.
     trace_ended: bool,
     pub(super) watch: Watch,
+    senders: VisionSenders,
     pub(super) alarms: Alarms,
     radio_alarms: RadioAlarms,
     publisher: Publisher,
@@ -266,12 +270,15 @@ impl EventLoop<'_> {
     fn open(&mut self, mail: Mail) {
         let now = self.now();
         match mail {
-            Mail::Vision(bytes) => {
+            Mail::Vision(bytes, from) => {
                 self.counts.vision += 1;
-                if matches!(
-                    self.feed(now, Input::Vision(&bytes)),
-                    InputVerdict::Vision(VisionVerdict::Newest | VisionVerdict::Restarted)
-                ) {
+                let admission = self.senders.receive(now, from, &bytes, self.host.world());
+                if admission == Admission::Used
+                    && matches!(
+                        self.feed(now, Input::Vision(&bytes)),
+                        InputVerdict::Vision(VisionVerdict::Newest | VisionVerdict::Restarted)
+                    )
+                {
                     self.publish(now);
                 }
             }
@@ -284,9 +291,7 @@ impl EventLoop<'_> {
                 self.feed(now, Input::Robot(&packet));
             }
             Mail::Orders(line) => {
-                if let InputVerdict::NoAnswer(error) = self.feed(now, Input::Orders(line.as_bytes())) {
-                    self.alarms.bad_answer(now, format!("strategy  an answer is refused: {error}"));
-                }
+                self.feed(now, Input::Orders(line.as_bytes()));
             }
             Mail::Opened { source, route } => self.watch.open(source, &route),
             Mail::Trouble(source, reason) => {
@@ -358,10 +363,27 @@ impl EventLoop<'_> {
     }
 
     fn look_at_alarms(&mut self, now: protocol::Instant, config: &TeamConfig) {
-        let route = self.watch.vision_path();
-        let vision = || format!("{}, {route}", config.vision);
-        let dropped = self.channels.mail.dropped();
-        self.lines.extend(self.alarms.look(now, &self.host, dropped, vision));
+        self.senders.look(now, self.expected_robots(now));
+        let vision = format!("{}, {}", config.vision, self.watch.vision_path());
+        let (dropped, second) = (self.channels.mail.dropped(), self.senders.second(now));
+        let missing = self.watch.missing();
+        self.lines.extend(self.alarms.look(now, &self.host, dropped, second, (&vision, missing)));
+    }
+
+    /// The robots that the right vision shows, and shows in motion.
+    fn expected_robots(&self, now: protocol::Instant) -> ExpectedRobots {
+        let mut expected = ExpectedRobots::default();
+        for robot in self.host.radio().present(now) {
+            expected.heard[robot.index()] = true;
+        }
+        // In open play a robot with a task never stands for long.
+        if !self.host.is_halting() && self.host.game().phase == Phase::Run {
+            for order in self.host.orders().iter().filter(|order| !matches!(order.task, Task::Stand)) {
+                let robot = order.robot.index();
+                expected.ordered[robot] = expected.heard[robot];
+            }
+        }
+        expected
     }
 
     /// Checks whether the recording keeps up and the disk accepts it.

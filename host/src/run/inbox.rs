@@ -3,23 +3,19 @@
 //! in datagrams.
 //!
 //! A flood of one kind cannot delay another: the referee's newest packet waits for at most one camera frame
-//! that is being handled. When a lane is full its oldest entry is dropped and counted; a datagram longer than
-//! its kind can be is refused. Memory is bounded by [`VISION_MAX`] × [`VISION_LEN_MAX`] and the like: 2 MB in
-//! all.
+//! that is being handled. When a lane is full its oldest entry is dropped and counted. Memory is bounded by
+//! [`LANE_BYTES_MAX`] of vision and as much of the referee; a datagram has as many bytes as UDP carries.
 
 use std::collections::VecDeque;
+use std::net::SocketAddr;
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::referee::SenderAddress;
 use protocol::link::Packet;
 
-/// The longest datagram of vision, bytes: a camera frame of 32 robots, 100 balls and the field's geometry has
-/// 9 kB.
-pub(super) const VISION_LEN_MAX: usize = 10_240;
-/// The longest packet of the referee, bytes: the controller sends 0.6 to 4 kB, with all game events that it
-/// stores.
-pub(super) const REFEREE_LEN_MAX: usize = 16_384;
+/// Bytes of waiting datagrams of one kind: 16 of the longest.
+const LANE_BYTES_MAX: usize = 1 << 20;
 /// Camera frames that wait: 0.1 s of eight cameras at 80 Hz. Newer frames supersede older ones.
 const VISION_MAX: usize = 64;
 /// Packets of the referee that wait: more than a second of it.
@@ -56,8 +52,8 @@ impl Source {
 /// An entry for the event loop.
 #[derive(Debug)]
 pub(super) enum Mail {
-    /// A datagram of the vision.
-    Vision(Vec<u8>),
+    /// A datagram of the vision, and its sender.
+    Vision(Vec<u8>, SocketAddr),
     /// A datagram of the referee, and its sender.
     Referee(Vec<u8>, SenderAddress),
     /// A frame of a robot.
@@ -88,10 +84,6 @@ pub(super) struct Dropped {
     pub(super) referee: u64,
     /// The same of robots.
     pub(super) robots: u64,
-    /// Datagrams longer than [`VISION_LEN_MAX`].
-    pub(super) vision_oversized: u64,
-    /// Datagrams longer than [`REFEREE_LEN_MAX`].
-    pub(super) referee_oversized: u64,
 }
 
 /// A queue that drops its oldest entry when full.
@@ -99,20 +91,48 @@ pub(super) struct Dropped {
 struct Lane<T> {
     waiting: VecDeque<T>,
     most: usize,
+    /// Bytes that wait.
+    held: usize,
     dropped: u64,
 }
 
-impl<T> Lane<T> {
+/// Bytes of an entry.
+trait Weighs {
+    fn bytes(&self) -> usize {
+        0
+    }
+}
+
+impl<S> Weighs for (Vec<u8>, S) {
+    fn bytes(&self) -> usize {
+        self.0.len()
+    }
+}
+
+impl Weighs for Packet {}
+impl Weighs for String {}
+impl Weighs for Mail {}
+
+impl<T: Weighs> Lane<T> {
     fn new(most: usize) -> Self {
-        Self { waiting: VecDeque::with_capacity(most), most, dropped: 0 }
+        Self { waiting: VecDeque::with_capacity(most), most, held: 0, dropped: 0 }
     }
 
     fn push(&mut self, entry: T) {
-        if self.waiting.len() == self.most {
-            self.waiting.pop_front();
+        self.held += entry.bytes();
+        while self.waiting.len() == self.most || self.held > LANE_BYTES_MAX {
+            if self.take().is_none() {
+                break;
+            }
             self.dropped += 1;
         }
         self.waiting.push_back(entry);
+    }
+
+    fn take(&mut self) -> Option<T> {
+        let entry = self.waiting.pop_front()?;
+        self.held -= entry.bytes();
+        Some(entry)
     }
 }
 
@@ -122,9 +142,8 @@ struct Lanes {
     referee: Lane<(Vec<u8>, SenderAddress)>,
     robots: Lane<Packet>,
     orders: Lane<String>,
-    vision: Lane<Vec<u8>>,
+    vision: Lane<(Vec<u8>, SocketAddr)>,
     notes: Lane<Mail>,
-    oversized: [u64; 2],
     in_row: u32,
 }
 
@@ -136,16 +155,13 @@ impl Lanes {
             orders: Lane::new(ORDERS_MAX),
             vision: Lane::new(VISION_MAX),
             notes: Lane::new(NOTES_MAX),
-            oversized: [0; 2],
             in_row: 0,
         }
     }
 
     fn put(&mut self, mail: Mail) {
         match mail {
-            Mail::Vision(bytes) if bytes.len() > VISION_LEN_MAX => self.oversized[0] += 1,
-            Mail::Vision(bytes) => self.vision.push(bytes),
-            Mail::Referee(bytes, _) if bytes.len() > REFEREE_LEN_MAX => self.oversized[1] += 1,
+            Mail::Vision(bytes, from) => self.vision.push((bytes, from)),
             Mail::Referee(bytes, from) => self.referee.push((bytes, from)),
             Mail::Robot(packet) => self.robots.push(packet),
             Mail::Orders(line) => self.orders.push(line),
@@ -156,29 +172,23 @@ impl Lanes {
     fn take(&mut self) -> Option<Mail> {
         if self.in_row < URGENT_IN_ROW || self.vision.waiting.is_empty() {
             self.in_row = self.in_row.saturating_add(1);
-            if let Some((bytes, from)) = self.referee.waiting.pop_front() {
+            if let Some((bytes, from)) = self.referee.take() {
                 return Some(Mail::Referee(bytes, from));
             }
-            if let Some(packet) = self.robots.waiting.pop_front() {
+            if let Some(packet) = self.robots.take() {
                 return Some(Mail::Robot(packet));
             }
-            if let Some(line) = self.orders.waiting.pop_front() {
+            if let Some(line) = self.orders.take() {
                 return Some(Mail::Orders(line));
             }
         }
         self.in_row = 0;
-        self.vision.waiting.pop_front().map(Mail::Vision).or_else(|| self.notes.waiting.pop_front())
+        let vision = self.vision.take().map(|(bytes, from)| Mail::Vision(bytes, from));
+        vision.or_else(|| self.notes.take())
     }
 
     fn dropped(&self) -> Dropped {
-        let [vision_oversized, referee_oversized] = self.oversized;
-        Dropped {
-            vision: self.vision.dropped,
-            referee: self.referee.dropped,
-            robots: self.robots.dropped,
-            vision_oversized,
-            referee_oversized,
-        }
+        Dropped { vision: self.vision.dropped, referee: self.referee.dropped, robots: self.robots.dropped }
     }
 }
 
@@ -198,12 +208,6 @@ impl Inbox {
     pub(super) fn put(&self, mail: Mail) {
         self.lanes.lock().unwrap_or_else(PoisonError::into_inner).put(mail);
         self.came.notify_one();
-    }
-
-    /// Counts a datagram that was too long to be read at all.
-    pub(super) fn refuse(&self, source: Source) {
-        let mut lanes = self.lanes.lock().unwrap_or_else(PoisonError::into_inner);
-        lanes.oversized[usize::from(source == Source::Referee)] += 1;
     }
 
     /// The most urgent entry, within `wait`.
@@ -236,9 +240,16 @@ mod tests {
         SenderAddress::INTERNAL
     }
 
+    /// The longest packets of vision and referee that are usual, bytes.
+    const VISION_LEN: usize = 10_240;
+
+    fn vision(bytes: Vec<u8>) -> Mail {
+        Mail::Vision(bytes, ([127, 0, 0, 1], 10_020).into())
+    }
+
     /// Bytes that the lanes hold.
     fn held(lanes: &Lanes) -> usize {
-        lanes.vision.waiting.iter().map(Vec::len).sum::<usize>()
+        lanes.vision.waiting.iter().map(|(bytes, _)| bytes.len()).sum::<usize>()
             + lanes.referee.waiting.iter().map(|(bytes, _)| bytes.len()).sum::<usize>()
     }
 
@@ -250,10 +261,10 @@ mod tests {
         for round in 0..50_u32 {
             for _ in 0..1_000 {
                 frames += 1;
-                let mut bytes = vec![0; VISION_LEN_MAX];
+                let mut bytes = vec![0; VISION_LEN];
                 bytes[..4].copy_from_slice(&frames.to_le_bytes());
-                lanes.put(Mail::Vision(bytes));
-                assert!(held(&lanes) <= VISION_MAX * VISION_LEN_MAX);
+                lanes.put(vision(bytes));
+                assert!(held(&lanes) <= VISION_MAX * VISION_LEN);
             }
             lanes.put(Mail::Referee(vec![round as u8], from()));
             assert!(
@@ -261,24 +272,30 @@ mod tests {
                 "{round}"
             );
             // The newest vision frames are left, in order.
-            let Some(Mail::Vision(bytes)) = lanes.take() else { panic!("vision waits") };
+            let Some(Mail::Vision(bytes, _)) = lanes.take() else { panic!("vision waits") };
             let number = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
             assert_eq!(number, frames - VISION_MAX as u32 + 1);
         }
         let dropped = lanes.dropped();
         assert_eq!(u64::from(frames), dropped.vision + 50 + lanes.vision.waiting.len() as u64);
-        assert_eq!((dropped.referee, dropped.vision_oversized), (0, 0));
+        assert_eq!(dropped.referee, 0);
     }
 
     #[test]
-    fn datagrams_longer_than_any_of_the_league_are_refused_before_they_wait() {
+    fn datagrams_of_any_length_are_taken_and_a_flood_of_them_takes_two_megabytes() {
         let mut lanes = Lanes::new();
-        for _ in 0..1_000 {
-            lanes.put(Mail::Vision(vec![0; VISION_LEN_MAX + 1]));
-            lanes.put(Mail::Referee(vec![0; REFEREE_LEN_MAX + 1], from()));
+        for length in [9_000, 20_000, 65_507] {
+            lanes.put(vision(vec![0; length]));
+            lanes.put(Mail::Referee(vec![0; length], from()));
+            assert!(matches!(lanes.take(), Some(Mail::Referee(bytes, _)) if bytes.len() == length));
+            assert!(matches!(lanes.take(), Some(Mail::Vision(bytes, _)) if bytes.len() == length));
         }
-        assert!(lanes.take().is_none());
-        assert_eq!((lanes.dropped().vision_oversized, lanes.dropped().referee_oversized), (1_000, 1_000));
+        for _ in 0..1_000 {
+            lanes.put(vision(vec![0; 65_507]));
+            lanes.put(Mail::Referee(vec![0; 65_507], from()));
+            assert!(held(&lanes) <= 2 * LANE_BYTES_MAX);
+        }
+        assert_eq!((lanes.dropped().vision, lanes.dropped().referee), (984, 984));
     }
 
     #[test]
@@ -287,10 +304,10 @@ mod tests {
         for number in 0..10_000_u32 {
             lanes.put(Mail::Referee(number.to_le_bytes().to_vec(), from()));
         }
-        lanes.put(Mail::Vision(vec![7]));
+        lanes.put(vision(vec![7]));
         let taken: Vec<_> = std::iter::from_fn(|| lanes.take()).collect();
         assert_eq!(taken.len(), REFEREE_MAX + 1);
-        let frame = taken.iter().position(|mail| matches!(mail, Mail::Vision(_)));
+        let frame = taken.iter().position(|mail| matches!(mail, Mail::Vision(..)));
         assert_eq!(frame, Some(URGENT_IN_ROW as usize));
         let Some(Mail::Referee(last, _)) = taken.last() else { panic!("the referee's") };
         assert_eq!(last[..], 9_999_u32.to_le_bytes());

@@ -19,17 +19,18 @@ mod tuning;
 mod watch;
 
 use std::ffi::OsString;
-use std::net::{SocketAddr, ToSocketAddrs as _};
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use casebase::CaseBase;
 use protocol::{Instant, RobotId};
 use rules::Colour;
-use ssl::net::addresses;
+use ssl::net::{addresses, resolve_destination};
 
 use crate::Host;
 use crate::config::{ParameterChange, RobotLink, TeamConfig};
+use crate::health_checks::Finding;
 use crate::robot_test::TestOrder;
 use crate::shell::{Link, SimSettings};
 
@@ -117,8 +118,8 @@ pub trait Operator {
     fn fault(&mut self, _now: Instant, _fault: String) {}
     /// A parameter was changed.
     fn changed(&mut self) {}
-    /// The host after an input, with the alarms of the moment.
-    fn look(&mut self, _now: Instant, _host: &Host, _alarms: Vec<String>) {}
+    /// The host after an input, with what does not fit at the moment.
+    fn look(&mut self, _now: Instant, _host: &Host, _findings: &[Finding]) {}
     /// The next request, if there is one.
     fn next_request(&mut self) -> Option<Request> {
         None
@@ -161,17 +162,14 @@ fn open_link(settings: &RunSettings<'_>, key: protocol::frame::TeamKey) -> Resul
 
 /// Address where a simulator takes a team's commands: `HOST[:PORT]` names its control port.
 fn simulator(host: &str, colour: Colour) -> Result<SocketAddr, RunError> {
-    let (name, port) = match host.rsplit_once(':') {
-        Some((name, port)) if !name.contains(':') => (name, port.parse().ok()),
-        _ => (host, Some(addresses::SIMULATOR_PORT)),
-    };
     let offset = match colour {
         Colour::Blue => 1,
         Colour::Yellow => 2,
     };
-    let port = port.and_then(|port: u16| port.checked_add(offset));
-    let found = port.and_then(|port| (name, port).to_socket_addrs().ok()?.next());
-    found.ok_or_else(|| RunError::UnknownSimulator(host.to_owned()))
+    let control = resolve_destination(host, Some(addresses::SIMULATOR_PORT)).ok();
+    let port =
+        control.and_then(|control| Some(SocketAddr::new(control.ip(), control.port().checked_add(offset)?)));
+    port.ok_or_else(|| RunError::UnknownSimulator(host.to_owned()))
 }
 
 #[cfg(test)]
@@ -183,6 +181,9 @@ mod tests {
         let port = |host, colour| simulator(host, colour).map(|address| address.port()).ok();
         assert_eq!(port("127.0.0.1", Colour::Blue), Some(10301));
         assert_eq!(port("127.0.0.1:20300", Colour::Yellow), Some(20302));
+        assert_eq!(port("[::1]", Colour::Blue), Some(10301));
+        assert_eq!(port("localhost", Colour::Yellow), Some(10302));
         assert_eq!(port("127.0.0.1:x", Colour::Blue), None);
+        assert_eq!(port("127.0.0.1:65535", Colour::Blue), None);
     }
 }

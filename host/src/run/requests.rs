@@ -10,8 +10,7 @@ impl EventLoop<'_> {
     /// Shows the host to the operator, and does what is asked for.
     pub(super) fn show(&mut self) {
         let now = self.now();
-        let alarms = [self.alarms.now(), self.watch.missing()].concat();
-        self.operator.look(now, &self.host, alarms);
+        self.operator.look(now, &self.host, self.alarms.now());
         while let Some(request) = self.operator.next_request() {
             let done = match request {
                 Request::Halt => {

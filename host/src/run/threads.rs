@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 
 use crate::external::StrategyLink as _;
 use crate::shell::{LineRate, Link, OutCounts, Outbox, StrategyProcess};
-use ssl::net::{Datagram, Interfaces, NetReceiver};
+use ssl::net::{Interfaces, NetReceiver};
 
-use super::inbox::{Inbox, Mail, REFEREE_LEN_MAX, Source, VISION_LEN_MAX};
+use super::inbox::{Inbox, Mail, Source};
 
 /// A thread checks this often whether to end.
 const END_CHECK: Duration = Duration::from_millis(100);
@@ -58,12 +58,22 @@ pub(super) fn receive(
             };
             reported = None;
             mail.put(Mail::Opened { source, route: receiver.route() });
+            let mut looked = Instant::now();
             while !end.load(Ordering::Relaxed) {
+                // Cables are plugged in, and addresses change, while a program runs.
+                if looked.elapsed() >= REOPEN_AFTER {
+                    looked = Instant::now();
+                    if receiver.rejoin(&by) {
+                        let route = receiver.route();
+                        mail.put(Mail::Note(format!("{:<8} is received on {route} now", source.name())));
+                        mail.put(Mail::Opened { source, route });
+                    }
+                }
                 match receiver.receive(END_CHECK) {
-                    Ok(Some(datagram)) => match letter(source, datagram) {
-                        Some(letter) => mail.put(letter),
-                        None => mail.refuse(source),
-                    },
+                    Ok(Some(datagram)) => mail.put(match source {
+                        Source::Vision => Mail::Vision(datagram.bytes.to_vec(), datagram.from),
+                        _ => Mail::Referee(datagram.bytes.to_vec(), datagram.from.into()),
+                    }),
                     Ok(None) => {}
                     Err(error) => {
                         mail.put(Mail::Trouble(source, error.to_string()));
@@ -106,16 +116,6 @@ pub(super) fn ask_strategy(
                 mail.put(Mail::Note(format!("strategy  started again, {} times by now", starts - 1)));
             }
         }
-    })
-}
-
-/// A datagram as mail; `None` if it is longer than its kind can be.
-fn letter(source: Source, Datagram { bytes, from }: Datagram<'_>) -> Option<Mail> {
-    let most = if source == Source::Vision { VISION_LEN_MAX } else { REFEREE_LEN_MAX };
-    let fits = bytes.len() <= most;
-    fits.then(|| match source {
-        Source::Vision => Mail::Vision(bytes.to_vec()),
-        _ => Mail::Referee(bytes.to_vec(), from.into()),
     })
 }
 

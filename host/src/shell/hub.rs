@@ -17,8 +17,8 @@ use super::udp::bind;
 const ROBOT_SILENCE_MAX: Duration = Duration::from_secs(1);
 /// Time a thread waits between checks whether it shall end.
 const STOP_CHECK_EVERY: Duration = Duration::from_millis(50);
-/// The longest datagram of the simulation protocol that is forwarded.
-const DATAGRAM_LEN_MAX: usize = 8192;
+/// The longest datagram that is forwarded: UDP carries no longer one.
+const DATAGRAM_LEN_MAX: usize = ssl::stream::DATAGRAM_MAX;
 
 /// Two threads between robots' processes and a simulator; they end when this is dropped.
 #[derive(Debug)]
@@ -90,7 +90,7 @@ fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<
 }
 
 fn pass(socket: &UdpSocket, end: &AtomicBool, mut to: impl FnMut(&[u8], SocketAddr)) {
-    let mut bytes = [0; DATAGRAM_LEN_MAX];
+    let mut bytes = vec![0; DATAGRAM_LEN_MAX];
     while !end.load(Ordering::Relaxed) {
         // A time-out, or a receiver that was not running: try again.
         if let Ok((len, from)) = socket.recv_from(&mut bytes) {

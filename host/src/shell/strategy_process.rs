@@ -2,6 +2,7 @@
 //! its standard output, a line each. One that ends or does not answer is ended and started again.
 
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
+use std::os::unix::process::CommandExt as _;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
@@ -11,6 +12,8 @@ use crate::external::{StrategyLink, StrategyStarter};
 
 /// Longest time for an answer where nothing runs in real time: a program that plans for longer is stuck.
 const ANSWER_WAIT_MAX: Duration = Duration::from_secs(5);
+/// Misses in a row after which a program that has answered before is given up.
+const MISSES_MAX: u32 = 3;
 /// A program that ended is started again after this time.
 const RESTART_AFTER: Duration = Duration::from_millis(500);
 /// Longest line of an answer, bytes: 16 orders of 200.
@@ -27,6 +30,20 @@ pub struct StrategyProcess {
     /// Not started again before this.
     again: Instant,
     starts: u32,
+    /// Whether it ever answered, and the misses since its last answer.
+    answered: bool,
+    misses: u32,
+    /// Why it did not answer the last time.
+    miss: Option<Miss>,
+}
+
+/// Why an answer is missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Miss {
+    /// The program ended, or closed its input or output.
+    Ended,
+    /// No line came in time.
+    TimedOut,
 }
 
 #[derive(Debug)]
@@ -43,7 +60,16 @@ impl StrategyProcess {
         let command = command.strip_prefix("cmd:").unwrap_or(command);
         let running = Running::start(command)?;
         let command = command.to_owned();
-        Ok(Self { command, within, running: Some(running), again: Instant::now(), starts: 1 })
+        Ok(Self {
+            command,
+            within,
+            running: Some(running),
+            again: Instant::now(),
+            starts: 1,
+            answered: false,
+            misses: 0,
+            miss: None,
+        })
     }
 
     /// A starter of this command for matches in the simulator, which wait for the answer.
@@ -70,6 +96,7 @@ impl Running {
             .arg(format!("exec {command}"))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
+            .process_group(0)
             .spawn()?;
         let (Some(input), Some(output)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(io::Error::other("the program has no standard input and output"));
@@ -80,20 +107,23 @@ impl Running {
     }
 
     /// The answer to a line; `Err`: the program is to be ended.
-    fn ask(&mut self, view: &str, within: Duration) -> Result<String, ()> {
+    fn ask(&mut self, view: &str, within: Duration) -> Result<String, Miss> {
         // Answers to earlier views came too late.
         while self.answers.try_recv().is_ok() {}
         let sent = self.input.write_all(view.as_bytes()).and_then(|()| self.input.write_all(b"\n"));
-        sent.and_then(|()| self.input.flush()).map_err(drop)?;
+        sent.and_then(|()| self.input.flush()).map_err(|_| Miss::Ended)?;
         self.answers.recv_timeout(within).map_err(|error| match error {
-            RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected => (),
+            RecvTimeoutError::Timeout => Miss::TimedOut,
+            RecvTimeoutError::Disconnected => Miss::Ended,
         })
     }
 }
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The processes that it started belong to its group, and end with it. It may have ended by itself.
+        let group = format!("kill -KILL -{} 2>/dev/null", self.child.id());
+        let _ = Command::new("sh").arg("-c").arg(group).status();
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -106,11 +136,33 @@ impl StrategyLink for StrategyProcess {
             self.running = Running::start(&self.command).ok();
             self.starts += u32::from(self.running.is_some());
         }
-        let answer = self.running.as_mut()?.ask(view, self.within);
-        if answer.is_err() {
-            self.running = None;
+        match self.running.as_mut()?.ask(view, self.within) {
+            Ok(answer) => {
+                (self.answered, self.misses) = (true, 0);
+                Some(answer)
+            }
+            Err(miss) => {
+                (self.running, self.miss) = (None, Some(miss));
+                self.misses += 1;
+                None
+            }
         }
-        answer.ok()
+    }
+
+    fn failure(&self) -> Option<String> {
+        let given_up = if self.answered { self.misses >= MISSES_MAX } else { self.misses > 0 };
+        let miss = self.miss.filter(|_| given_up)?;
+        let (command, ever) = (&self.command, if self.answered { "" } else { " without ever answering" });
+        Some(match miss {
+            Miss::Ended => format!(
+                "the strategy `{command}` ended{ever}: does it run by itself, and read until its input ends?"
+            ),
+            Miss::TimedOut => format!(
+                "no answer from the strategy `{command}` for {} s{}: does it flush its output after every line?",
+                self.within.as_secs(),
+                if self.answered { "" } else { ", it never answered" }
+            ),
+        })
     }
 }
 
@@ -156,5 +208,27 @@ mod tests {
         let mut process = StrategyProcess::start("sleep 60", Duration::from_millis(50)).unwrap();
         assert_eq!(process.answer("a"), None);
         assert_eq!(process.id(), None, "it was ended");
+        assert!(process.failure().is_some_and(|words| words.contains("does it flush")), "{process:?}");
+    }
+
+    #[test]
+    fn a_program_that_is_not_there_or_ends_at_once_is_given_up_in_words() {
+        for command in ["true", "false", "no-such-program-here 2>/dev/null", "exec >&-"] {
+            let mut process = StrategyProcess::start(command, Duration::from_secs(5)).unwrap();
+            assert_eq!(process.answer("a"), None, "{command}");
+            let words = process.failure().unwrap_or_default();
+            assert!(words.contains("without ever answering"), "{command}: {words}");
+        }
+    }
+
+    #[test]
+    fn the_children_of_a_strategy_end_with_it() {
+        let marker = format!("/tmp/onetwo-strategy-{}", std::process::id());
+        let command = format!("sh -c 'trap \"\" TERM; (sleep 2; echo alive > {marker}) & sleep 60'");
+        let mut process = StrategyProcess::start(&command, Duration::from_millis(100)).unwrap();
+        assert_eq!(process.answer("a"), None);
+        drop(process);
+        thread::sleep(Duration::from_millis(2_500));
+        assert!(!std::path::Path::new(&marker).exists(), "a child went on");
     }
 }

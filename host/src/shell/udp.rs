@@ -2,7 +2,7 @@
 //! robots' own broadcast or multicast group.
 
 use std::io;
-use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
+use std::net::{SocketAddr, UdpSocket};
 use std::time::Duration;
 
 use protocol::frame::FRAME_LEN_MAX;
@@ -24,9 +24,10 @@ pub struct UdpLink {
 impl UdpLink {
     /// Resolves `HOST:PORT` and opens a socket.
     pub fn open(address: &str) -> Result<Self, LinkError> {
-        let unknown = |error| LinkError::UnknownHost { address: format!("udp://{address}"), error };
-        let nobody = || unknown(io::Error::from(io::ErrorKind::NotFound));
-        let to = address.to_socket_addrs().map_err(unknown)?.next().ok_or_else(nobody)?;
+        let to = ssl::net::resolve_destination(address, None).map_err(|error| LinkError::UnknownHost {
+            address: format!("udp://{address}"),
+            error: io::Error::other(error),
+        })?;
         let socket = bind(to)?;
         // A robots' network may be a broadcast address; where it is not, this does nothing.
         let _ = socket.set_broadcast(true);

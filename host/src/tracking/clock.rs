@@ -43,9 +43,42 @@ pub(super) struct Clock {
     /// Time of the newest camera frame, and its arrival.
     newest: Option<(Captured, i64)>,
     candidate: Option<CandidateClock>,
-    /// Least difference of clocks seen in the current and in the last window.
+    least: LeastDifference,
+}
+
+/// Least difference of two clocks, by packets of the last moments.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LeastDifference {
+    /// Of the current and of the last window.
     least: Option<[i64; 2]>,
     stretch_start: i64,
+}
+
+impl LeastDifference {
+    /// Takes the difference that a packet shows.
+    pub(super) fn receive(&mut self, difference: i64, arrived: i64) {
+        match &mut self.least {
+            Some([current, _]) if arrived < self.stretch_start + DELAY_WINDOW_US => {
+                *current = difference.min(*current);
+            }
+            Some([current, last]) => {
+                // After a pause the window before is out of date.
+                let just_before = arrived < self.stretch_start + 2 * DELAY_WINDOW_US;
+                *last = if just_before { *current } else { difference };
+                *current = difference;
+                self.stretch_start = arrived;
+            }
+            None => {
+                self.least = Some([difference; 2]);
+                self.stretch_start = arrived;
+            }
+        }
+    }
+
+    /// The least one; `None` before the first packet.
+    pub(super) fn get(&self) -> Option<i64> {
+        self.least.map(|[current, last]| current.min(last))
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -91,37 +124,21 @@ impl Clock {
         Judgement::Foreign
     }
 
-    /// Updates the offset by a new camera frame of the clock we follow; `sent` is when vision sent it.
+    /// Updates the offset by a new camera frame of the clock we follow; `sent` is when vision sent it
+    /// ([`plausible`]).
     pub(super) fn receive(&mut self, captured: Captured, sent: Option<Captured>, arrived: Instant) {
         let arrived = arrived.0 as i64;
         if self.newest.is_none_or(|(newest, _)| captured > newest) {
             self.newest = Some((captured, arrived));
             self.candidate = None;
         }
-        let sent = sent.filter(|sent| (captured..=captured + PROCESSING_MAX_US).contains(sent));
         let difference = arrived - sent.unwrap_or(captured);
-        match &mut self.least {
-            Some([current, _]) if arrived < self.stretch_start + DELAY_WINDOW_US => {
-                *current = difference.min(*current);
-            }
-            Some([current, last]) => {
-                // After a pause the window before is out of date.
-                let just_before = arrived < self.stretch_start + 2 * DELAY_WINDOW_US;
-                *last = if just_before { *current } else { difference };
-                *current = difference;
-                self.stretch_start = arrived;
-            }
-            None => {
-                self.least = Some([difference; 2]);
-                self.stretch_start = arrived;
-            }
-        }
+        self.least.receive(difference, arrived);
     }
 
     /// The moment `captured` on our clock.
     pub(super) fn ours(&self, captured: Captured) -> Instant {
-        let offset = self.least.map_or(0, |[current, last]| current.min(last));
-        Instant((captured + offset).max(0) as u64)
+        Instant((captured + self.least.get().unwrap_or(0)).max(0) as u64)
     }
 
     /// Age of the newest camera frame when its packet came.
@@ -130,6 +147,11 @@ impl Clock {
             |(captured, arrived): (Captured, i64)| Instant(arrived.max(0) as u64).since(self.ours(captured));
         self.newest.map_or(Duration(0), delay)
     }
+}
+
+/// When a frame was sent, where that can be: after it was taken, and soon.
+pub(super) fn plausible(sent: Option<Captured>, captured: Captured) -> Option<Captured> {
+    sent.filter(|sent| (captured..=captured + PROCESSING_MAX_US).contains(sent))
 }
 
 #[cfg(test)]

@@ -4,7 +4,9 @@
 //! | topic | module |
 //! |---|---|
 //! | Valid detections of a camera frame | `seen` |
+//! | A clock for each camera | `cameras` |
 //! | Vision's clock, and its offset from ours | `clock` |
+//! | One sender for each camera | [`senders`] |
 //! | Order of camera frames, without repetitions | `order` |
 //! | Robots and their motion | `robots` |
 //! | Choice of the ball, its kicks and flights | `ball` |
@@ -12,7 +14,7 @@
 //! | Tracker packets for other programs | `publish` |
 //!
 //! **Invariants.** No content of a packet causes a panic; every camera frame is counted in
-//! [`TrackingCounts`]. Frames within 50 ms of the newest count in the order in which they were taken, so
+//! [`TrackingCounts`]. Frames within 0.2 s of the newest count in the order in which they were taken, so
 //! copies and shuffled packets change nothing. After [`Tracker::new`] and the first packets nothing is
 //! allocated. Same packets, same bits. A packet costs some 20,000 instructions, including the present world
 //! (16,200 with grSim's recording, 23,200 with ER-Force's 11 robots; `track --times`).
@@ -39,6 +41,7 @@
 //! ```
 
 mod ball;
+mod cameras;
 mod clock;
 mod filter;
 mod order;
@@ -46,6 +49,7 @@ mod publish;
 mod robots;
 mod scene;
 mod seen;
+pub mod senders;
 
 use motion::ball::BallModel;
 use protocol::{Duration, Instant};
@@ -53,11 +57,13 @@ use ssl::vision::{DetectionFrame, WrapperPacket};
 
 pub use ball::BallCounts;
 pub(crate) use ball::HiddenBall;
+pub use cameras::CameraStatus;
 pub use publish::Publisher;
 pub use robots::{RobotCounts, RobotNoise};
 
 use self::ball::{Around, Balls};
-use self::clock::{Clock, Judgement};
+use self::cameras::Cameras;
+use self::clock::{Clock, Judgement, plausible};
 use self::order::{Placed, Timeline};
 use self::robots::Robots;
 use self::scene::Scene;
@@ -177,7 +183,7 @@ struct State {
 impl State {
     fn see(&mut self, frame: &Frame, scene: &Scene, settings: &TrackingSettings) {
         self.nonsense += u64::from(frame.nonsense);
-        self.robots.see(&frame.robots, frame.at, settings.robots);
+        self.robots.see(frame, settings.robots);
         let around = Around { robots: &self.robots, scene, sigma: settings.ball };
         self.balls.see(frame, around);
     }
@@ -189,6 +195,7 @@ pub struct Tracker {
     settings: TrackingSettings,
     scene: Scene,
     clock: Clock,
+    cameras: Cameras,
     timeline: Timeline<State>,
     state: State,
     /// The present camera frame, kept to reuse its memory.
@@ -210,6 +217,7 @@ impl Tracker {
             settings,
             scene: Scene::new(settings.models),
             clock: Clock::default(),
+            cameras: Cameras::default(),
             timeline: Timeline::new(state),
             state,
             frame: Frame::empty(),
@@ -232,12 +240,25 @@ impl Tracker {
         if !self.frame.read(image) {
             return VisionVerdict::Nonsense;
         }
+        let (camera, stamp) = (self.frame.camera, self.frame.at);
+        let sent = plausible(captured(image.t_sent), stamp);
+        let in_time = self.cameras.receive(&mut self.frame, sent, arrived);
+        let verdict = self.fuse(sent.map(|sent| sent - stamp), arrived, in_time);
+        let newest = self.timeline.newest().unwrap_or(self.frame.at);
+        let unused = matches!(verdict, VisionVerdict::Late(_) | VisionVerdict::ForeignClock);
+        self.cameras.note(camera, arrived, unused.then_some(self.frame.at - newest));
+        verdict
+    }
+
+    /// Takes the frame into the state; `processing`: vision's time from frame to packet.
+    fn fuse(&mut self, processing: Option<i64>, arrived: Instant, in_time: bool) -> VisionVerdict {
         let at = self.frame.at;
         let mut restarted = match self.clock.judge(at, arrived) {
-            Judgement::Ours => false,
-            Judgement::Foreign => return VisionVerdict::ForeignClock,
+            Judgement::Ours if in_time => false,
+            Judgement::Ours | Judgement::Foreign => return VisionVerdict::ForeignClock,
             Judgement::Restart => true,
         };
+        self.cameras.compare(&self.frame, &self.timeline.before(at, &self.state).robots);
         let mut placed = self.place(restarted);
         if let Placed::Late(_) = placed
             && self.clock.late(at, arrived) == Judgement::Restart
@@ -248,7 +269,9 @@ impl Tracker {
         match placed {
             Placed::Repeated => return VisionVerdict::Repeated,
             Placed::Late(by) => return VisionVerdict::Late(Duration(by.unsigned_abs())),
-            Placed::Newest | Placed::Before(_) => self.clock.receive(at, captured(image.t_sent), arrived),
+            Placed::Newest | Placed::Before(_) => {
+                self.clock.receive(at, processing.map(|time| at + time), arrived);
+            }
         }
         match placed {
             _ if restarted => VisionVerdict::Restarted,
@@ -309,6 +332,11 @@ impl Tracker {
     /// Geometry of field, cameras and ball from vision.
     pub fn geometry(&self) -> &VisionGeometry {
         &self.scene.geometry
+    }
+
+    /// The cameras heard lately: their clocks, delays and rates.
+    pub fn cameras(&self, now: Instant) -> impl Iterator<Item = CameraStatus> {
+        self.cameras.status(now)
     }
 
     /// Counts of packets so far.

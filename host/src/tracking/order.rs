@@ -8,11 +8,11 @@ use heapless::Vec;
 
 use super::seen::{Captured, Frame};
 
-/// Largest delay of a camera frame, µs: three ticks of a 60 Hz camera. Waiting for older ones changes
-/// decisions already made.
-const LATE_MAX_US: Captured = 50_000;
+/// Largest delay of a camera frame, µs: a camera whose packets take a network's worst delays. Older ones
+/// would change what robots did long ago.
+const LATE_MAX_US: Captured = 200_000;
 /// Camera frames kept: those of eight cameras of 60 Hz within the window.
-const FRAMES_KEPT: usize = 24;
+const FRAMES_KEPT: usize = 96;
 
 /// Result of inserting a camera frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,6 +87,13 @@ impl<S: Copy> Timeline<S> {
         self.replay(place, frame, state, &mut apply)
     }
 
+    /// The state before a frame of that moment; `now` where it is the newest.
+    pub(super) fn before<'a>(&'a self, at: Captured, now: &'a S) -> &'a S {
+        let slots = self.order.iter().map(|slot| &self.slots[usize::from(*slot)]);
+        let mut later = slots.rev().take_while(|slot| slot.frame.at > at);
+        later.by_ref().last().map_or(now, |slot| &slot.before)
+    }
+
     fn replay(
         &mut self,
         place: usize,
@@ -113,14 +120,14 @@ mod tests {
     use super::*;
 
     /// A state that distinguishes every order: a list of the frames applied.
-    type Seen = [(Captured, u32); 40];
+    type Seen = [(Captured, u32); 110];
 
     fn frame(at: Captured, camera: u32) -> Frame {
         Frame { at, camera, ..Frame::empty() }
     }
 
-    fn feed(frames: &[(Captured, u32)]) -> (Vec<(Captured, u32), 40>, std::vec::Vec<Placed>) {
-        let mut state: (Seen, usize) = ([(0, 0); 40], 0);
+    fn feed(frames: &[(Captured, u32)]) -> (Vec<(Captured, u32), 110>, std::vec::Vec<Placed>) {
+        let mut state: (Seen, usize) = ([(0, 0); 110], 0);
         let mut timeline = Timeline::new(state);
         let placed = frames.iter().map(|(at, camera)| {
             timeline.put(&frame(*at, *camera), &mut state, |(seen, count), frame| {
@@ -154,17 +161,17 @@ mod tests {
 
     #[test]
     fn what_is_older_than_the_window_is_late() {
-        let (seen, placed) = feed(&[(100_000, 0), (50_000, 1), (49_999, 1), (0, 1)]);
-        assert_eq!(placed[1..], [Placed::Before(1), Placed::Late(50_001), Placed::Late(100_000)]);
-        assert_eq!(seen[..], [(50_000, 1), (100_000, 0)]);
+        let (seen, placed) = feed(&[(300_000, 0), (100_000, 1), (99_999, 1), (0, 1)]);
+        assert_eq!(placed[1..], [Placed::Before(1), Placed::Late(200_001), Placed::Late(300_000)]);
+        assert_eq!(seen[..], [(100_000, 1), (300_000, 0)]);
     }
 
     #[test]
     fn frames_of_more_cameras_than_are_kept_are_still_in_order() {
-        let mut images: std::vec::Vec<(Captured, u32)> = (1..=30).map(|i| (i * 1_000, 0)).collect();
-        images.extend([(29_500, 1), (1, 1)]);
+        let mut images: std::vec::Vec<(Captured, u32)> = (1..=100).map(|i| (i * 1_000, 0)).collect();
+        images.extend([(99_500, 1), (1, 1)]);
         let (seen, placed) = feed(&images);
-        assert_eq!(placed[30..], [Placed::Before(1), Placed::Late(29_999)]);
-        assert_eq!(seen[29..], [(29_500, 1), (30_000, 0)]);
+        assert_eq!(placed[100..], [Placed::Before(1), Placed::Late(99_999)]);
+        assert_eq!(seen[99..], [(99_500, 1), (100_000, 0)]);
     }
 }

@@ -10,7 +10,7 @@ use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 
 use super::filter::{Freedom, Plane, Turning};
-use super::seen::{Captured, RobotSeen};
+use super::seen::{Captured, Frame, RobotSeen};
 use crate::world::{Robot, index};
 
 /// Camera frames that confirm a robot: 50 ms of one camera; misread patterns of one or two frames are
@@ -29,6 +29,15 @@ const GATE_GROWTH_M_S: f32 = 4.0;
 const GATE_TIME_MAX_S: f32 = 0.25;
 /// Within this time a robot was seen "just now", s: six frames of 60 Hz, three of a camera with dropouts.
 const SEEN_LATELY_S: f32 = 0.1;
+/// The same for a slow camera, in times between its frames.
+const GAPS_OF_PATIENCE: f32 = 1.25;
+/// A robot that crosses from one camera's view into another's shows the cameras' clocks: it was seen by the
+/// other within this time, µs, in this number of frames, and drives at least this fast, m/s.
+const CROSSING_US: Captured = 100_000;
+const CROSSING_FRAMES: u16 = FRAMES_FULL;
+const CROSSING_SPEED_M_S: f32 = 1.0;
+/// It is no farther off than this, m: another place is another robot.
+const CROSSING_WITHIN_M: f32 = 0.7;
 /// Two robots' centres are never nearer, m: the smallest hulls have a radius of 0.085 m, half of it is
 /// certainly a misreading.
 const SAME_PLACE_WITHIN_M: f32 = 0.09;
@@ -107,10 +116,13 @@ struct Track {
     images: u16,
     /// The cameras' confidence in their detections, averaged, 0–1.
     quality: f32,
+    /// The camera that saw it last.
+    camera: u32,
 }
 
 impl Track {
-    fn new(seen: &RobotSeen, at: Captured, noise: RobotNoise) -> Self {
+    fn new(seen: &RobotSeen, frame: &Frame, noise: RobotNoise) -> Self {
+        let at = frame.at;
         Self {
             plane: Plane::new(seen.position, noise.place, SPEED_SIGMA_M_S),
             turning: Turning::new(seen.heading.unwrap_or(Angle::ZERO), noise.heading, RATE_SIGMA_RAD_S),
@@ -119,6 +131,7 @@ impl Track {
             counted: at,
             images: 1,
             quality: seen.confidence,
+            camera: frame.camera,
         }
     }
 
@@ -129,7 +142,8 @@ impl Track {
             - (GATE_M + GATE_GROWTH_M_S * unseen.min(GATE_TIME_MAX_S))
     }
 
-    fn see(&mut self, seen: &RobotSeen, at: Captured, noise: RobotNoise) {
+    fn see(&mut self, seen: &RobotSeen, frame: &Frame, noise: RobotNoise) {
+        let at = frame.at;
         let dt = seconds(at - self.at);
         if dt > COASTS_FOR_S {
             // Unseen for long: the place is used, the velocity is not.
@@ -144,7 +158,7 @@ impl Track {
         if let Some(heading) = seen.heading {
             self.turning.see(heading, noise.heading);
         }
-        (self.at, self.seen) = (at, at);
+        (self.at, self.seen, self.camera) = (at, at, frame.camera);
         if at - self.counted >= TICK_US {
             self.counted = at;
             self.images = self.images.saturating_add(1);
@@ -173,7 +187,8 @@ impl Track {
 
 impl Robots {
     /// Takes a camera frame's robots.
-    pub(super) fn see(&mut self, robots: &[RobotSeen], at: Captured, noise: RobotNoise) {
+    pub(super) fn see(&mut self, frame: &Frame, noise: RobotNoise) {
+        let at = frame.at;
         for track in self
             .believed
             .iter_mut()
@@ -182,12 +197,15 @@ impl Robots {
         {
             *track = None;
         }
-        for seen in robots {
-            self.see_one(seen, at, noise);
+        for seen in &frame.robots {
+            self.see_one(seen, frame, noise);
         }
     }
 
-    fn see_one(&mut self, seen: &RobotSeen, at: Captured, noise: RobotNoise) {
+    fn see_one(&mut self, seen: &RobotSeen, frame: &Frame, noise: RobotNoise) {
+        let at = frame.at;
+        // A slow camera shows a robot again after a frame's time.
+        let patience = SEEN_LATELY_S.max(frame.gap * GAPS_OF_PATIENCE);
         let (team, id) = (index(seen.who.colour), seen.who.id.index());
         let elsewhere = self.believed[team][id].is_some_and(|track| at - track.seen <= micros(SEEN_LATELY_S));
         if !elsewhere && self.stands_another(seen.who, seen.position, at) {
@@ -199,16 +217,16 @@ impl Robots {
         if let Some(track) = &mut self.believed[team][id]
             && track.misses_by(seen.position, at) <= 0.0
         {
-            track.see(seen, at, noise);
+            track.see(seen, frame, noise);
             self.counts.taken += 1;
             return;
         }
         let candidate = &mut self.candidates[team][id];
         match candidate {
-            Some(track) if at - track.seen > micros(SEEN_LATELY_S) => *track = Track::new(seen, at, noise),
-            Some(track) if track.misses_by(seen.position, at) <= 0.0 => track.see(seen, at, noise),
+            Some(track) if at - track.seen > micros(patience) => *track = Track::new(seen, frame, noise),
+            Some(track) if track.misses_by(seen.position, at) <= 0.0 => track.see(seen, frame, noise),
             Some(_) if elsewhere => {}
-            _ => *candidate = Some(Track::new(seen, at, noise)),
+            _ => *candidate = Some(Track::new(seen, frame, noise)),
         }
         let believable = candidate.filter(|track| track.images >= FRAMES_TO_BELIEVE && !elsewhere);
         if let Some(track) = believable {
@@ -237,6 +255,21 @@ impl Robots {
             let named = team.iter().zip(RobotId::all());
             named.filter_map(move |(track, id)| track.as_ref().map(|track| (Who { colour, id }, track)))
         })
+    }
+
+    /// The camera that saw a robot of a frame just before, where it was another one, and the time by which the
+    /// robot is ahead of its path, µs.
+    pub(super) fn crossing(&self, seen: &RobotSeen, frame: &Frame) -> Option<(u32, i64)> {
+        let track = self.believed[index(seen.who.colour)][seen.who.id.index()].as_ref()?;
+        let unseen = frame.at - track.seen;
+        let steady = track.camera != frame.camera && track.images >= CROSSING_FRAMES;
+        let off = seen.position - track.moved(frame.at).pose.position;
+        let speed = track.plane.velocity.norm();
+        let fits = steady
+            && (0..=CROSSING_US).contains(&unseen)
+            && speed >= CROSSING_SPEED_M_S
+            && off.norm() <= CROSSING_WITHIN_M;
+        fits.then(|| (track.camera, micros(off.dot(track.plane.velocity) / (speed * speed))))
     }
 
     /// The robot at that moment, if it is confirmed.

@@ -80,6 +80,11 @@ impl Scene {
             field.clamp(point, -margin) == point
         })
     }
+
+    /// Whether it is inside the field's lines; everywhere, while the field is unknown.
+    pub(super) fn is_inside(&self, point: Point<Field>) -> bool {
+        self.geometry.field().is_none_or(|field| field.clamp(point, 0.0) == point)
+    }
 }
 
 #[cfg(test)]

@@ -47,13 +47,15 @@ pub(super) struct Frame {
     pub(super) camera: u32,
     pub(super) robots: Vec<RobotSeen, ROBOTS_MAX>,
     pub(super) balls: Vec<BallSeen, BALLS_MAX>,
+    /// Average time between frames of its camera, s.
+    pub(super) gap: f32,
     /// Number of invalid objects: not finite, too far, without a shell number, or too many.
     pub(super) nonsense: u32,
 }
 
 impl Frame {
     pub(super) const fn empty() -> Self {
-        Self { at: 0, camera: 0, robots: Vec::new(), balls: Vec::new(), nonsense: 0 }
+        Self { at: 0, camera: 0, robots: Vec::new(), balls: Vec::new(), gap: 0.0, nonsense: 0 }
     }
 
     /// Reads a camera frame into this one; `false` where its time or camera is invalid.

@@ -4,7 +4,9 @@
 mod ball;
 mod clocks;
 mod order;
+mod other_balls;
 mod publish;
 mod recordings;
 mod robots;
+mod sources;
 mod stadium;

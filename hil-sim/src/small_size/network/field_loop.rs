@@ -85,6 +85,7 @@ impl<'s> FieldLoop<'s> {
 
     fn step(&mut self, running: Duration) -> Result<(), NetworkError> {
         self.ports.listen(&mut self.server, &mut self.lines);
+        self.referee.sends = self.ports.serve();
         self.referee.listen(self.server.world(), running, &mut self.lines);
         match &mut self.sync {
             Some(sync) => {
@@ -147,6 +148,9 @@ impl<'s> FieldLoop<'s> {
                 Destination::Reply { from, to } => self.ports.answer(from, to, &transmit.bytes),
                 Destination::Status(to) => self.ports.send_to(to, &transmit.bytes),
                 Destination::Vision(port) => {
+                    if !self.ports.serve() {
+                        continue;
+                    }
                     self.vision.set_port(port);
                     self.lines.extend(self.vision.send(&transmit.bytes));
                     self.lines.extend(self.spectator.vision(&transmit.bytes, running));

@@ -90,11 +90,17 @@ impl Ports {
                 }
                 Err(error) if !entry.troubled => {
                     entry.troubled = true;
-                    lines.push(format!("{}: {error}; it is tried again every second", entry.name()));
+                    lines.push(format!("{}: {error}; it is tried again every second, and vision and referee are not sent until then", entry.name()));
                 }
                 Err(_) => {}
             }
         }
+    }
+
+    /// Whether every port is open: a field that nobody can command is not sent, since its vision would be mixed
+    /// with that of the field that can be.
+    pub(super) fn serve(&self) -> bool {
+        self.endpoints.iter().all(|entry| entry.socket.is_some())
     }
 
     /// Passes received datagrams to the simulator.
@@ -174,10 +180,12 @@ mod tests {
         let second = Ports::open(home, base, None, &mut lines);
         assert_eq!(lines.len(), 3, "{lines:?}");
         assert!(lines[0].contains("is taken") && lines[0].contains(&base.to_string()), "{}", lines[0]);
+        assert!(first.serve() && !second.serve());
         drop(first);
         let mut second = second;
         lines.clear();
         second.take(&mut lines);
         assert_eq!(lines.len(), 3, "free again: {lines:?}");
+        assert!(second.serve());
     }
 }

@@ -18,6 +18,8 @@ pub(super) const REFEREE_EVERY_MS: u64 = 10;
 pub(super) struct Referee {
     source: RefereeSource,
     sender: NetSender,
+    /// Packets are sent: the field's ports are its own.
+    pub(super) sends: bool,
     events: Vec<PhysicsEvent>,
     /// The step of the world at its last call.
     looked: u64,
@@ -49,7 +51,15 @@ impl Referee {
             RefereeKind::Received(from) => external(from)?,
         };
         let sender = NetSender::new(settings.referee_to, settings.interface.as_deref());
-        Ok(Self { source, sender, events: Vec::new(), looked: 0, advanced: 0, packets: Vec::new() })
+        Ok(Self {
+            source,
+            sender,
+            sends: true,
+            events: Vec::new(),
+            looked: 0,
+            advanced: 0,
+            packets: Vec::new(),
+        })
     }
 
     /// Another game starts; the internal referee starts again with it, an external game controller does not
@@ -105,7 +115,9 @@ impl Referee {
                 }
                 while let Some(packet) = referee.poll_packet() {
                     let bytes = packet.encode_to_vec();
-                    lines.extend(self.sender.send(&bytes));
+                    if self.sends {
+                        lines.extend(self.sender.send(&bytes));
+                    }
                     self.packets.push(bytes);
                 }
             }

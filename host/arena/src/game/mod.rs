@@ -22,7 +22,7 @@ pub use config::{GameConfig, TeamSetup};
 pub use holds::Hold;
 pub use manual_referee::{ManualReferee, RefereeOrder};
 pub use recording::header;
-pub use report::{BlockedReport, GameReport, PerTeam, TeamReport};
+pub use report::{BlockedReport, GameReport, PerTeam, StrategyReport, TeamReport};
 pub use story::{MatchLog, sentence};
 
 use hil_sim::small_size::camera::Cameras;
@@ -100,6 +100,9 @@ pub enum GameError {
         /// The operating system's error.
         error: std::io::Error,
     },
+    /// A team's own strategy does not answer any more.
+    #[error("{0}")]
+    StrategyFailed(String),
 }
 
 impl<'a> Game<'a> {
@@ -258,7 +261,8 @@ impl<'a> Game<'a> {
         }
         self.tick += 1;
         self.world.take_events(&mut self.events);
-        Ok(())
+        let failed = self.teams.iter().find_map(Team::strategy_failure);
+        failed.map_or(Ok(()), |words| Err(GameError::StrategyFailed(words)))
     }
 
     fn judge(&mut self, watcher: &mut dyn Watcher) {

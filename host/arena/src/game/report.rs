@@ -100,9 +100,46 @@ impl<T> PerTeam<T> {
     }
 }
 
+/// Answers of a strategy in another program.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StrategyReport {
+    /// Number of answers that were followed.
+    pub used: u64,
+    /// Number of answers that were refused.
+    pub refused: u64,
+    /// Why the last one was refused.
+    pub refusal: Option<String>,
+}
+
+impl StrategyReport {
+    fn of(host: &host::Host) -> Option<Self> {
+        let (refused, error) = host.refused_answers();
+        let used = host.used_answers();
+        host.settings().external.then(|| Self { used, refused, refusal: error.map(ToString::to_string) })
+    }
+
+    /// Whether it answered, and no answer could be followed.
+    pub const fn never_played(&self) -> bool {
+        self.used == 0 && self.refused > 0
+    }
+
+    /// A warning, where answers were refused.
+    pub fn warning(&self) -> Option<String> {
+        let Self { used, refused, refusal } = self;
+        let reason = refusal.as_ref()?;
+        let all = used + refused;
+        Some(format!(
+            "{refused} of {all} answers of the strategy were refused, the last one because {reason} (docs/strategy-protocol.md)"
+        ))
+    }
+}
+
 /// Results of one team.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TeamReport {
+    /// Answers of its strategy, where another program plays.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strategy: Option<StrategyReport>,
     /// Time in which the team had the ball, s.
     pub possession_s: f32,
     /// Seconds in play with the ball in the opponents' half.
@@ -136,6 +173,7 @@ impl TeamReport {
         let metrics = game.referee().metrics();
         let own = metrics.team(team);
         Self {
+            strategy: StrategyReport::of(game.host(team)),
             possession_s: own.possession_s,
             ball_in_their_half_s: own.ball_in_their_half_s,
             shots: own.shots,

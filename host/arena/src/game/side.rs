@@ -96,6 +96,11 @@ impl<'a> Team<'a> {
         }
     }
 
+    /// Why its strategy will not answer any more.
+    pub(super) fn strategy_failure(&self) -> Option<String> {
+        self.strategy.as_ref().and_then(|strategy| strategy.failure())
+    }
+
     /// Delivers the robots' frames to the host.
     pub(super) fn receive(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
         for packet in self.air.deliver_to_host(tick) {

@@ -11,6 +11,7 @@ use feed::CaseExplanations;
 use page::{Limits, NoToken, Page, PageError, PageSettings, Powers, Token};
 use thiserror::Error;
 
+use super::parsers::address;
 use crate::output::{note, print_secret, program_log};
 use crate::stop::stopped_by_hand;
 
@@ -19,7 +20,7 @@ use crate::stop::stopped_by_hand;
 pub(crate) struct PageArgs {
     /// Address of the page; it is reachable from other machines only if an address other than the loopback is
     /// given.
-    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
+    #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:8080", value_parser = address)]
     listen: SocketAddr,
     /// Name of the flag at this verb, for messages.
     #[arg(skip = LISTEN)]

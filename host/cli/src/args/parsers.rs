@@ -1,7 +1,7 @@
 //! `parsers`: values of flags, read from the command line. An error says what was expected; clap names the
 //! flag.
 
-use std::net::{SocketAddr, ToSocketAddrs as _};
+use std::net::{IpAddr, SocketAddr};
 
 use arena::Profile;
 use casebase::GoalEnd;
@@ -11,7 +11,7 @@ use host::config::Calibration;
 use host::strategy::Team;
 use protocol::{RobotId, TeamId};
 use rules::{Colour, League};
-use ssl::net::addresses;
+use ssl::net::{addresses, resolve, resolve_destination, split_address};
 use study::store::Shard;
 
 /// A Small Size league by its name.
@@ -94,28 +94,43 @@ pub(crate) fn referee(text: &str) -> Result<RefereeKind, String> {
     match text {
         "internal" => Ok(RefereeKind::Internal),
         "none" => Ok(RefereeKind::None),
-        address => address
-            .parse()
-            .map(RefereeKind::Received)
-            .map_err(|_| "expected internal, none or an address such as 224.5.23.1:10003".to_owned()),
+        address => resolve(address, None).map(RefereeKind::Received).map_err(|error| {
+            format!("expected internal, none or an address such as 224.5.23.1:10003: {error}")
+        }),
     }
 }
 
 /// A game controller's port for automatic referees: `HOST` or `HOST:PORT`, with the league's port where none
 /// is given.
 pub(crate) fn controller(text: &str) -> Result<String, String> {
-    let port = addresses::AUTOREF_PORT;
-    match text.rsplit_once(':') {
-        Some((host, port)) if !host.is_empty() && port.parse::<u16>().is_ok() => Ok(text.to_owned()),
-        None if !text.is_empty() => Ok(format!("{text}:{port}")),
-        _ => Err(format!("expected the game controller's HOST or HOST:PORT, such as 127.0.0.1:{port}")),
-    }
+    let league_port = addresses::AUTOREF_PORT;
+    let (host, port) = split_address(text, Some(league_port)).ok_or_else(|| {
+        format!("expected the game controller's HOST or HOST:PORT, such as 127.0.0.1:{league_port}")
+    })?;
+    Ok(if host.contains(':') { format!("[{host}]:{port}") } else { format!("{host}:{port}") })
 }
 
-/// `HOST:PORT`, resolved.
-pub(crate) fn host_address(text: &str) -> Result<SocketAddr, String> {
-    let found = text.to_socket_addrs().ok().and_then(|mut found| found.next());
-    found.ok_or_else(|| "expected HOST:PORT that the network can resolve".to_owned())
+/// An address to listen on: `HOST:PORT`, of a machine by name or address.
+pub(crate) fn address(text: &str) -> Result<SocketAddr, String> {
+    resolve(text, None)
+}
+
+/// An address to send to, as [`address`].
+pub(crate) fn destination(text: &str) -> Result<SocketAddr, String> {
+    resolve_destination(text, None)
+}
+
+/// A game controller's port for teams: `HOST[:PORT]`.
+pub(crate) fn team_port(text: &str) -> Result<SocketAddr, String> {
+    resolve_destination(text, Some(addresses::TEAM_PORT))
+}
+
+/// A machine without a port.
+pub(crate) fn machine(text: &str) -> Result<IpAddr, String> {
+    let (host, _) = split_address(text, Some(0))
+        .filter(|(_, port)| *port == 0)
+        .ok_or("expected a machine's name or address")?;
+    resolve(if host.contains(':') { text } else { host }, Some(0)).map(|address| address.ip())
 }
 
 pub(crate) fn robot_id(text: &str) -> Result<RobotId, String> {
@@ -290,6 +305,7 @@ mod tests {
     fn a_controller_without_a_port_has_the_leagues() {
         assert_eq!(controller("127.0.0.1").as_deref(), Ok("127.0.0.1:10007"));
         assert_eq!(controller("gc.local:1234").as_deref(), Ok("gc.local:1234"));
+        assert_eq!(controller("::1").as_deref(), Ok("[::1]:10007"));
         assert!(controller("").is_err() && controller("host:").is_err() && controller(":10007").is_err());
     }
 

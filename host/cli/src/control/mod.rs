@@ -8,7 +8,9 @@ mod operator;
 mod terminal;
 
 use std::ffi::OsString;
-use std::net::{IpAddr, SocketAddr};
+use std::fs::File;
+use std::io::{self, Write as _};
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -22,7 +24,7 @@ use ssl::net::addresses;
 
 use crate::Failure;
 use crate::args::page::PageArgs;
-use crate::args::parsers::{RobotIds, kick, robot_ids, seconds};
+use crate::args::parsers::{RobotIds, address, destination, kick, robot_ids, seconds, team_port};
 use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::destination::{self, FileKind, check_recording};
 use crate::library;
@@ -57,10 +59,10 @@ pub(crate) struct ControlArgs {
     /// Our keeper's number, until the referee sends another.
     #[arg(long, value_name = "ID")]
     keeper: Option<u8>,
-    /// Address of the interface that receives and sends multicast; by default it is received on every
+    /// The interface that receives and sends multicast, its name or address; by default it is received on every
     /// interface.
-    #[arg(long, value_name = "ADDRESS")]
-    interface: Option<IpAddr>,
+    #[arg(long, value_name = "NAME")]
+    interface: Option<String>,
     /// Where the robots are: `sim://HOST[:PORT]` (brains of our own in a simulator; its control port, 10300),
     /// `udp://HOST:PORT` or `serial:DEVICE[:BAUD]`.
     #[arg(long, value_name = "LINK")]
@@ -77,10 +79,10 @@ pub(crate) struct ControlArgs {
     #[arg(long)]
     insecure_zero_key: bool,
     /// Address where vision is received: 224.5.23.2:10006, and 224.5.23.2:10020 for robots in a simulator.
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     vision: Option<SocketAddr>,
     /// Address where the referee is received: 224.5.23.1:10003.
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     referee: Option<SocketAddr>,
     /// The only referee that is obeyed: the address of its machine (192.168.1.5), its address with port, or
     /// its identifier. Others are ignored and reported. Without it the strictest command of all of them is
@@ -93,11 +95,11 @@ pub(crate) struct ControlArgs {
     #[arg(long, value_name = "halt|go-on")]
     referee_silence: Option<String>,
     /// Where our tracker's packets go: 224.5.23.2:10010.
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = destination)]
     tracker: Option<SocketAddr>,
     /// The game controller's port for teams, such as 127.0.0.1:10008. If omitted, the goalkeeper is not
     /// announced to the game controller.
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = team_port)]
     game_controller: Option<SocketAddr>,
     /// A program that gives the robots' orders, such as `python3 my_team.py`: it gets the view as a line
     /// of JSON and answers with one (docs/strategy-protocol.md). While it does not answer, robots stand.
@@ -245,7 +247,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         colour: args.colour.clone(),
         league: args.league.clone(),
         keeper: args.keeper,
-        interface: args.interface,
+        interface: args.interface.clone(),
         robots: args.robots.clone(),
         key_file: args.key_file.clone(),
         insecure_zero_key: args.insecure_zero_key.then_some(true),

@@ -10,6 +10,7 @@ use feed::{
 };
 use host::Host;
 use host::config::TeamConfig;
+use host::health_checks::Finding;
 use host::run::{Operator, Request};
 use page::{MatchEvent, Page, Powers, UserRequest};
 
@@ -97,9 +98,9 @@ impl Operator for ControlOperator<'_> {
         self.on_page(|dashboard| dashboard.parameters.hasten());
     }
 
-    fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) {
+    fn look(&mut self, now: protocol::Instant, host: &Host, findings: &[Finding]) {
         if let Some(dashboard) = &mut self.dashboard {
-            dashboard.look(now, host, alarms);
+            dashboard.look(now, host, findings);
             let name = self.file.as_deref().map(printable_path);
             let file = Some((self.config, name.as_deref()));
             dashboard.parameters.look(&[host], file, &dashboard.page);
@@ -174,7 +175,7 @@ impl Dashboard {
     }
 
     /// Sends the scene to the page if it is due.
-    fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) {
+    fn look(&mut self, now: protocol::Instant, host: &Host, findings: &[Finding]) {
         let every = Duration::from_secs_f64(SCENE_EVERY_S);
         let t = now.0 as f64 * 1e-6;
         self.ledger.look(t, host, &[host]);
@@ -183,7 +184,8 @@ impl Dashboard {
             let gauges = vec![tick(self.took)];
             let moment = Moment { t, now, feed: host, hosts: &[host], truth: None, referee: None, gauges };
             let mut deferred_scene = self.composer.compose(moment);
-            deferred_scene.scene.alarms = alarms;
+            deferred_scene.scene.alarms = findings.iter().map(ToString::to_string).collect();
+            deferred_scene.scene.findings = findings.iter().map(Finding::to_json).collect();
             for match_event in self.composer.take_match_events() {
                 self.page.push(match_event);
             }

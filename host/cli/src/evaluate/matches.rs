@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::PoisonError;
 
 use arena::CaseNames;
 use arena::cases::LibraryHandle;
@@ -29,6 +30,7 @@ use crate::args::parsers::{self, league, match_seconds};
 use crate::args::{DirectoryArgs, SettingsArgs, VERSION};
 use crate::destination::FileKind;
 use crate::library;
+use crate::output::note;
 
 /// Which matches, and the output.
 #[derive(Debug, Args)]
@@ -112,6 +114,7 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
         settings: args.settings.choose()?.settings,
         program: VERSION.to_owned(),
         names: CaseNames::new(library_handle.as_ref().map_or_else(Vec::new, LibraryHandle::names)),
+        refusals: study::matches::Refusals::default(),
     };
     // Before hours are spent on matches that cannot be compared.
     args.before(&matches.identity())?;
@@ -120,6 +123,9 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
     let pool = args.work.pool()?;
     let rows =
         work::with_bar(&pool, "playing", |on_progress| matches.play_shard(args.shard, &file, on_progress))?;
+    for (number, warning) in matches.refusals.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+        note!("warning  match {number}: {warning}");
+    }
     if args.shard == Shard::WHOLE {
         return args.finish(&matches.identity(), &rows, directory);
     }

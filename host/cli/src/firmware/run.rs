@@ -32,7 +32,7 @@ pub(crate) struct RunArgs {
     serial: String,
     /// The robots' radio is UDP over the board's Ethernet: this address takes the frames of `control --robots
     /// udp://ADDRESS:PORT` and passes them to all robots, as a base station would.
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = crate::args::parsers::address)]
     udp: Option<SocketAddr>,
     /// Where the robots' bodies are: a simulator, as HOST or HOST:PORT; without a port the league's for their
     /// team, 10301 blue, 10302 yellow. Without it their orders move nothing.

@@ -22,7 +22,9 @@ use ssl::net::addresses;
 use thiserror::Error;
 
 use crate::Failure;
-use crate::args::parsers::{cameras, controller, field_speed, league, referee, seconds};
+use crate::args::parsers::{
+    address, cameras, controller, destination, field_speed, league, machine, referee, seconds,
+};
 use crate::robot_description::ensure_built_for;
 use crate::stop::stopped_by_hand;
 use spectator::FieldOperator;
@@ -58,7 +60,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long)]
     ideal: bool,
     /// Destination of vision: a multicast group, or one machine.
-    #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::VISION_SIMULATED.into())]
+    #[arg(long, value_name = "HOST:PORT", default_value_t = addresses::VISION_SIMULATED.into(), value_parser = destination)]
     vision: SocketAddr,
     /// The control port; blue's robots are at the next one, yellow's at the one after. 0: any three that are
     /// free.
@@ -66,10 +68,10 @@ pub(crate) struct SimulateArgs {
     ports: u16,
     /// Step the field by TCP instead of by the clock: blue's port, yellow's is the next one (the simulation
     /// protocol's SimulationSyncRequest, each after its length). 0: any two that are free.
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = address)]
     sync: Option<SocketAddr>,
     /// Address that accepts control; with 127.0.0.1 other machines have no access.
-    #[arg(long, value_name = "ADDRESS", default_value = "0.0.0.0")]
+    #[arg(long, value_name = "HOST", default_value = "0.0.0.0", value_parser = machine)]
     listen: std::net::IpAddr,
     /// The interface that multicast leaves by, its name or address; the system's choice by default.
     #[arg(long, value_name = "NAME")]
@@ -87,10 +89,10 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "HOST[:PORT]", value_parser = controller)]
     autoref: Option<String>,
     /// Destination of the internal referee's packets.
-    #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::REFEREE.into())]
+    #[arg(long, value_name = "HOST:PORT", default_value_t = addresses::REFEREE.into(), value_parser = destination)]
     referee_to: SocketAddr,
     /// Send the output of our own tracker, too: the league's address is 224.5.23.2:10010.
-    #[arg(long, value_name = "ADDRESS:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = destination)]
     tracker: Option<SocketAddr>,
     /// The robot's description, a file or a built-in name: refused where it is not the one that this program
     /// is built for (docs/robots.md).
@@ -101,7 +103,7 @@ pub(crate) struct SimulateArgs {
     headless: bool,
     /// Address of the page; it is reachable from other machines only if an address other than the loopback is
     /// given.
-    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
+    #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:8080", value_parser = address)]
     page: SocketAddr,
     /// End after this number of seconds; else Ctrl-C ends it.
     #[arg(short, long, value_name = "SECONDS", value_parser = seconds)]

@@ -6,7 +6,6 @@ use super::kick::Air;
 use super::track::{Glimpse, Track};
 use super::{Around, Balls, UNSEEN_AFTER_S};
 use crate::tracking::robots::micros;
-use crate::tracking::scene::Scene;
 use crate::tracking::seen::{BallSeen, Captured, Frame};
 
 /// Camera frames that make a blob the ball when there is none.
@@ -31,7 +30,11 @@ impl Balls {
     /// The blob nearest to where the ball is expected in the camera frame, if one can be it.
     pub(super) fn nearest_to_chosen(&self, frame: &Frame, around: Around<'_>) -> Option<usize> {
         let track = self.chosen_track()?;
+        let hidden = frame.at - track.seen > micros(UNSEEN_AFTER_S);
         let near = frame.balls.iter().enumerate().filter_map(|(index, seen)| {
+            if hidden && self.is_other(seen.position, frame.at) {
+                return None;
+            }
             let glimpse = self.glimpse(frame, seen, around.scene);
             let off = match &self.air {
                 Air::Flying(_, flight) => {
@@ -64,25 +67,30 @@ impl Balls {
             track.fits(position, at, models).map(|off| (off, track))
         });
         if let Some((_, track)) = fitting.reduce(|best, next| if next.0 < best.0 { next } else { best }) {
-            track.note(at, seen);
+            track.note(frame, seen);
+            track.inside |= around.scene.is_inside(position);
             track.see(&glimpse, models, around.sigma);
             return;
         }
         // A new track; without room it replaces the one unseen the longest.
+        let other = self.is_other(position, at);
+        let inside = around.scene.is_inside(position);
         let room = self.tracks.iter_mut().enumerate().filter(|(index, _)| Some(*index) != chosen);
         let seen_last = |track: &Option<Track>| track.map_or(Captured::MIN, |track| track.seen);
         if let Some((_, place)) = room.min_by_key(|(_, track)| seen_last(track)) {
-            *place = Some(Track::new(&glimpse, seen, around.sigma));
+            let mut track = Track::new(&glimpse, seen, around.sigma);
+            (track.other, track.inside) = (other, inside);
+            *place = Some(track);
         }
     }
 
     /// Drops tracks that no camera has seen for long.
     pub(super) fn forget(&mut self, now: Captured) {
         let patience = micros(self.patience());
-        for (index, place) in self.tracks.iter_mut().enumerate() {
+        for index in 0..self.tracks.len() {
             let kept = if self.chosen == Some(index) { patience } else { micros(OTHER_FORGOTTEN_AFTER_S) };
-            if place.is_some_and(|track| now - track.seen > kept) {
-                *place = None;
+            if let Some(track) = self.tracks[index].take_if(|track| now - track.seen > kept) {
+                self.remember_other(&track);
             }
         }
         if self.chosen.is_some_and(|index| self.tracks[index].is_none()) {
@@ -98,21 +106,31 @@ impl Balls {
         if held { HELD_FORGOTTEN_AFTER_S } else { FORGOTTEN_AFTER_S }
     }
 
-    /// Makes another track the ball where this one is not visible, or out of the field.
-    pub(super) fn choose(&mut self, now: Captured, scene: &Scene) {
-        let playable = |track: &Track| scene.is_playable(track.plane.position);
+    /// Makes another track the ball where this one is not visible and the other can be it, or where this one is
+    /// out of the field.
+    pub(super) fn choose(&mut self, now: Captured, around: Around<'_>) {
+        let playable = |track: &Track| around.scene.is_playable(track.plane.position);
         let current = self.chosen_track();
         let lost = current.is_none_or(|track| now - track.seen > micros(REPLACED_AFTER_S));
-        if !lost && current.is_some_and(playable) {
+        let settled = current.is_some_and(|track| playable(track) && track.inside) && !self.is_doubtful();
+        if !lost && settled {
             return;
         }
         let needed = if current.is_some() { FRAMES_TO_TAKE_OVER } else { FRAMES_TO_BELIEVE };
         let last = current.map(|track| track.plane.position);
+        let outside = current.is_some_and(|track| !playable(track));
         let mut best: Option<(usize, (bool, f32))> = None;
         for (index, track) in self.tracks.iter().enumerate() {
             let Some(track) = track.as_ref().filter(|_| self.chosen != Some(index)) else { continue };
             let steady = track.images >= needed && now - track.seen <= micros(UNSEEN_AFTER_S);
-            if !steady || (!lost && !playable(track)) {
+            let can_be_it = if lost {
+                self.may_be_ours(track, now, around)
+            } else if self.is_doubtful() {
+                self.is_back(track, now, around)
+            } else {
+                playable(track) && (track.inside || outside)
+            };
+            if !steady || !can_be_it {
                 continue;
             }
             let away = last.map_or(0.0, |last| last.distance(track.plane.position));
@@ -122,6 +140,9 @@ impl Balls {
             }
         }
         if let Some((index, _)) = best {
+            if let Some(track) = self.tracks[index] {
+                self.note_replacement(&track, now, around);
+            }
             self.become_ball(Some(index));
         }
     }

@@ -2,11 +2,12 @@
 //! place when no camera sees it. m, m/s; times on vision's clock, µs.
 //!
 //! Every blob that stays becomes a track. One of them is the ball, and stays the ball while it is seen: a
-//! second ball, a hand or a shoe never replaces a visible ball. A ball that vanishes at a robot's front
-//! counts as held there.
+//! second ball, a hand or a shoe never replaces a visible ball, and one that robots cover only where ours can
+//! have come out. A ball that vanishes at a robot's front counts as held there.
 
 mod choice;
 mod flight;
+mod gone;
 mod hidden;
 mod kick;
 mod track;
@@ -15,6 +16,7 @@ use geometry::{Field, Point};
 pub(crate) use hidden::HiddenBall;
 use protocol::Instant;
 
+use self::gone::{Gone, OtherPlaces};
 use self::kick::{Air, Kicked};
 use self::track::{Glimpse, Track};
 use super::filter::Plane;
@@ -57,6 +59,9 @@ pub(super) struct Balls {
     air: Air,
     kicked: Option<Kicked>,
     contact: Option<kick::Contact>,
+    /// Since when and where the ball is not seen.
+    gone: Option<Gone>,
+    others: OtherPlaces,
     pub(super) counts: BallCounts,
 }
 
@@ -81,7 +86,9 @@ impl Balls {
         for (_, seen) in frame.balls.iter().enumerate().filter(|(index, _)| Some(*index) != ball) {
             self.see_other(frame, seen, around);
         }
-        self.choose(frame.at, around.scene);
+        self.mark_others(frame);
+        self.note_absence(frame.at, around);
+        self.choose(frame.at, around);
     }
 
     fn see_ball(&mut self, frame: &Frame, seen: &BallSeen, around: Around<'_>) {
@@ -90,7 +97,8 @@ impl Balls {
         self.land(frame.at, models);
         let glimpse = self.glimpse(frame, seen, around.scene);
         let Some(track) = self.chosen.and_then(|index| self.tracks[index].as_mut()) else { return };
-        track.note(frame.at, seen);
+        track.note(frame, seen);
+        track.inside |= around.scene.is_inside(seen.position);
         if matches!(self.air, Air::Flying(..)) {
             self.see_flying(&glimpse, around);
             return;

@@ -10,7 +10,7 @@ use motion::trajectory::Motion;
 
 use super::super::filter::{Freedom, Plane};
 use super::super::robots::seconds;
-use super::super::seen::{BallSeen, Captured};
+use super::super::seen::{BallSeen, Captured, Frame};
 use crate::world::BallModels;
 
 /// White acceleration of a rolling ball, m²/s³: `steady` is a field surface that decelerates it 0.3 m/s² more
@@ -75,6 +75,16 @@ pub(super) struct Track {
     /// Speed above which the ball slides, m/s.
     pub(super) rolls_below: f32,
     strange: Option<Glimpse>,
+    /// Time and place of the first detection.
+    pub(super) began: Captured,
+    pub(super) origin: Point<Field>,
+    /// Place of the last detection, and its camera.
+    pub(super) seen_at: Point<Field>,
+    pub(super) camera: u32,
+    /// Another ball than ours: it was seen beside ours.
+    pub(super) other: bool,
+    /// It has been inside the field's lines.
+    pub(super) inside: bool,
 }
 
 impl Track {
@@ -88,6 +98,12 @@ impl Track {
             quality: seen.confidence,
             rolls_below: f32::INFINITY,
             strange: None,
+            began: glimpse.at,
+            origin: glimpse.position,
+            seen_at: glimpse.position,
+            camera: glimpse.camera,
+            other: false,
+            inside: false,
         }
     }
 
@@ -120,8 +136,10 @@ impl Track {
     }
 
     /// Records that it was seen.
-    pub(super) fn note(&mut self, at: Captured, seen: &BallSeen) {
+    pub(super) fn note(&mut self, frame: &Frame, seen: &BallSeen) {
+        let at = frame.at;
         self.seen = self.seen.max(at);
+        (self.seen_at, self.camera) = (seen.position, frame.camera);
         if at - self.counted >= TICK_US {
             self.counted = at;
             self.images = self.images.saturating_add(1);

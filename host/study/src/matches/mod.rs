@@ -20,6 +20,8 @@ mod plan;
 mod plot;
 mod row;
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::WorldPlan;
@@ -42,7 +44,7 @@ pub use row::{MatchRow, MatchSide};
 
 use crate::store::{Difference, EvaluationError, Experiment, StoredExperiment};
 use arena::CaseNames;
-use arena::game::{GameConfig, NoWatcher, play};
+use arena::game::{GameConfig, GameError, NoWatcher, play};
 
 /// All settings that the matches of a plan depend on.
 #[derive(Clone, Debug)]
@@ -57,7 +59,12 @@ pub struct Matches {
     pub program: String,
     /// Names of the cases.
     pub names: CaseNames,
+    /// Warnings about answers that were refused, of the matches played by this process.
+    pub refusals: Refusals,
 }
+
+/// Warnings about a strategy's answers that were refused: match and warning.
+pub type Refusals = Arc<Mutex<Vec<(usize, String)>>>;
 
 /// Identity of the evaluation of a file of matches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -136,6 +143,15 @@ impl Experiment for Matches {
     fn play(&self, planned: &Planned) -> Result<MatchRow, EvaluationError> {
         let report = play(&self.config(planned)?, &mut NativeBackend::new(self.base), &mut NoWatcher)
             .map_err(|error| EvaluationError::Match { number: planned.number, error })?;
+        let metrics = [&report.metrics.blue, &report.metrics.yellow];
+        for strategy in metrics.into_iter().filter_map(|metrics| metrics.strategy.as_ref()) {
+            let Some(warning) = strategy.warning() else { continue };
+            if strategy.never_played() {
+                let error = GameError::StrategyFailed(warning);
+                return Err(EvaluationError::Match { number: planned.number, error });
+            }
+            self.refusals.lock().unwrap_or_else(PoisonError::into_inner).push((planned.number, warning));
+        }
         Ok(MatchRow::new(planned, &report))
     }
 }

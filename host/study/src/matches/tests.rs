@@ -31,6 +31,7 @@ fn matches(plan: MatchPlan) -> Matches {
         settings: RetrievalSettings::default(),
         program: "test".to_owned(),
         names: CaseNames::default(),
+        refusals: Refusals::default(),
     }
 }
 

@@ -2,9 +2,12 @@
 //! one machine's.
 
 use std::net::{Ipv4Addr, SocketAddr};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::{Datagram, Interfaces, NetError, Port, Receiver, Sender};
+
+/// Without a network the next one is looked for after this.
+const ALONE_FOR: Duration = Duration::from_secs(2);
 
 /// Sends to an address; an error is reported once, not a thousand times a second.
 #[derive(Debug)]
@@ -14,6 +17,8 @@ pub struct NetSender {
     by: Option<String>,
     sender: Option<Sender>,
     troubled: bool,
+    /// When it found no network and spoke to this machine alone.
+    alone: Option<Instant>,
     /// Number of datagrams sent.
     pub sent: u64,
 }
@@ -21,7 +26,7 @@ pub struct NetSender {
 impl NetSender {
     /// The socket is opened with the first datagram.
     pub fn new(to: SocketAddr, by: Option<&str>) -> Self {
-        Self { to, by: by.map(str::to_owned), sender: None, troubled: false, sent: 0 }
+        Self { to, by: by.map(str::to_owned), sender: None, troubled: false, alone: None, sent: 0 }
     }
 
     /// The address that it sends to.
@@ -40,19 +45,22 @@ impl NetSender {
     /// Sends; returns a message for the operator where sending starts to fail, recovers, or uses another
     /// interface than requested.
     pub fn send(&mut self, bytes: &[u8]) -> Option<String> {
+        if self.alone.is_some_and(|since| since.elapsed() >= ALONE_FOR) {
+            // A network may be there by now.
+            (self.by, self.sender) = (None, None);
+        }
         let trouble = match self.try_send(bytes) {
             Ok(()) => return self.works(),
             Err(NetError::NoRoute { .. }) if self.by.is_none() && self.to.ip().is_multicast() => {
                 // Without any network this machine can still be reached.
                 self.by = Some(Ipv4Addr::LOCALHOST.to_string());
                 self.sender = None;
+                let was_alone = self.alone.replace(Instant::now()).is_some();
                 match self.try_send(bytes) {
                     Ok(()) => {
                         self.sent += 1;
-                        return Some(format!(
-                            "no network leads to {}: only this machine is spoken to",
-                            self.to
-                        ));
+                        let told = format!("no network leads to {}: only this machine is spoken to", self.to);
+                        return (!was_alone).then_some(told);
                     }
                     Err(error) => error.to_string(),
                 }
@@ -65,6 +73,9 @@ impl NetSender {
 
     fn works(&mut self) -> Option<String> {
         self.sent += 1;
+        if self.by.is_none() && self.alone.take().is_some() {
+            return Some(format!("a network leads to {} now", self.to));
+        }
         std::mem::take(&mut self.troubled).then(|| format!("{} can be spoken to again", self.to))
     }
 
@@ -103,6 +114,14 @@ impl NetReceiver {
         match self {
             Self::Group(receiver) => receiver.receive(wait),
             Self::Own(port) => port.receive(wait),
+        }
+    }
+
+    /// Joins interfaces that came or changed since ([`Receiver::rejoin`]); returns whether any did.
+    pub fn rejoin(&mut self, by: &Interfaces) -> bool {
+        match self {
+            Self::Group(receiver) => receiver.rejoin(by),
+            Self::Own(_) => false,
         }
     }
 

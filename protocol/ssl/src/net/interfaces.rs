@@ -12,6 +12,8 @@ pub struct Interface {
     pub name: String,
     /// First IPv4 address of the interface.
     pub address: Ipv4Addr,
+    /// Number in the system: an adapter that is plugged in again has another one.
+    pub index: Option<u32>,
 }
 
 impl Interface {
@@ -64,7 +66,7 @@ pub fn interfaces() -> std::io::Result<Vec<Interface>> {
         if let IpAddr::V4(address) = interface.ip()
             && found.iter().all(|known| known.name != interface.name)
         {
-            found.push(Interface { name: interface.name, address });
+            found.push(Interface { name: interface.name, address, index: interface.index });
         }
     }
     Ok(found)
@@ -86,8 +88,8 @@ mod tests {
 
     #[test]
     fn an_interface_is_found_by_name_and_by_address() {
-        let eth = Interface { name: "eth0".into(), address: Ipv4Addr::new(192, 0, 2, 2) };
-        let lo = Interface { name: "lo".into(), address: Ipv4Addr::LOCALHOST };
+        let eth = Interface { name: "eth0".into(), address: Ipv4Addr::new(192, 0, 2, 2), index: None };
+        let lo = Interface { name: "lo".into(), address: Ipv4Addr::LOCALHOST, index: None };
         let there_are = [lo.clone(), eth.clone()];
         assert_eq!(find("eth0", &there_are).expect("by name"), eth);
         assert_eq!(find("127.0.0.1", &there_are).expect("by address"), lo);

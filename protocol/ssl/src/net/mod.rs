@@ -8,6 +8,7 @@
 //! socket, or one loop over all with a wait of zero, is simple and enough: a match has four to eight sockets
 //! and under a thousand datagrams a second. A program with a runtime calls these from a blocking task.
 
+mod address;
 mod connection;
 mod endpoint;
 mod error;
@@ -15,6 +16,7 @@ mod interfaces;
 mod probe;
 mod sockets;
 
+pub use address::{resolve, resolve_destination, split_address};
 pub use connection::Connection;
 pub use endpoint::{NetReceiver, NetSender};
 pub use error::NetError;

@@ -25,6 +25,7 @@ pub struct Datagram<'a> {
 #[derive(Debug)]
 pub struct Receiver {
     inbox: Inbox,
+    group: Ipv4Addr,
     joined: Vec<Interface>,
 }
 
@@ -50,7 +51,31 @@ impl Receiver {
         if joined.is_empty() || (all_wanted && !tried.is_empty()) {
             return Err(NetError::NotJoined { group: address, tried });
         }
-        Ok(Self { inbox: Inbox::new(socket.into(), bound), joined })
+        Ok(Self { inbox: Inbox::new(socket.into(), bound), group: address, joined })
+    }
+
+    /// Joins the group on interfaces that came or changed since, and leaves out those that went; returns whether
+    /// the list changed. Cheap enough for once a second.
+    pub fn rejoin(&mut self, by: &Interfaces) -> bool {
+        // A named interface that is away comes back, or the next call fails again.
+        let Ok(there_are) = by.choose() else { return false };
+        let socket = socket2::SockRef::from(&self.inbox.socket);
+        let gone = self.joined.extract_if(.., |known| !there_are.contains(known));
+        let mut changed = false;
+        for interface in gone {
+            // Where the interface is gone its membership is, too.
+            let _ = socket.leave_multicast_v4(&self.group, &interface.address);
+            changed = true;
+        }
+        for interface in there_are {
+            if !self.joined.contains(&interface)
+                && socket.join_multicast_v4(&self.group, &interface.address).is_ok()
+            {
+                self.joined.push(interface);
+                changed = true;
+            }
+        }
+        changed
     }
 
     /// The interfaces it receives on.

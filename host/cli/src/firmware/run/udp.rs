@@ -135,15 +135,12 @@ fn one_team(robots: &[(&Path, Provision)]) -> Result<Option<Colour>, String> {
 
 /// The simulator's port for a team.
 fn simulator(text: &str, team: Option<Colour>) -> Result<SocketAddr, Failure> {
-    use std::net::ToSocketAddrs as _;
     let port = match team {
         Some(Colour::Yellow) => addresses::ROBOTS_YELLOW_PORT,
         Some(Colour::Blue) | None => addresses::ROBOTS_BLUE_PORT,
     };
-    let with_port = text.to_socket_addrs().or_else(|_| (text, port).to_socket_addrs());
-    let found = with_port.ok().and_then(|mut found| found.next());
-    let unknown = || format!("unknown host in --simulator {text}; give HOST or HOST:PORT");
-    found.ok_or_else(|| FirmwareError::Team(unknown()).into())
+    let unknown = |error| FirmwareError::Team(format!("unknown host in --simulator {text}: {error}")).into();
+    ssl::net::resolve_destination(text, Some(port)).map_err(unknown)
 }
 
 /// An empty journal for a robot: the memory of its board, as a file.

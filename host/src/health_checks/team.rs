@@ -1,0 +1,241 @@
+//! `team`: checks of our team by referee, vision and radio: name and colour, the keeper, the number of robots,
+//! the place of a placement, and robots that only radio or only vision knows.
+
+use std::fmt;
+
+use geometry::{Field, Point};
+use protocol::{Duration, Instant, RobotId};
+use rules::{Colour, League, Phase};
+
+use super::Lasting;
+use crate::Host;
+
+/// A robot counts as seen for this time, s.
+const SEEN_WITHIN: Duration = Duration::millis(500);
+/// A robot that only radio or vision knows is reported after this: it has been carried on or off by then.
+const APART_AFTER: Duration = Duration::millis(1_500);
+
+/// What does not fit between our team, the referee, vision and radio.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TeamFault {
+    /// The referee has our name at the other colour.
+    OtherColour {
+        /// Our name.
+        name: String,
+        /// Our colour.
+        us: Colour,
+        /// The name that the referee has at our colour.
+        other: String,
+    },
+    /// The keeper that the referee names is not on the field.
+    NoKeeper {
+        /// Number of the keeper.
+        keeper: RobotId,
+    },
+    /// The referee allows more robots than the league does.
+    Division {
+        /// Robots that the referee allows.
+        allowed: u32,
+        /// The league that was chosen, and the number that it allows.
+        league: League,
+        /// Robots that the league allows.
+        of_league: u32,
+    },
+    /// A placement that no robot can do.
+    Placement {
+        /// The place, m; none: the referee has sent none.
+        place: Option<Point<Field>>,
+    },
+    /// A command of the referee that this program does not know.
+    Command {
+        /// Number of the command.
+        number: i32,
+    },
+    /// A robot that radio receives and no camera sees.
+    Unseen(RobotId),
+    /// A robot that cameras see and radio does not receive.
+    Unheard(RobotId),
+}
+
+impl TeamFault {
+    /// Identity without numbers that change.
+    pub(super) fn matter(&self) -> String {
+        match self {
+            Self::OtherColour { .. } => "name".to_owned(),
+            Self::NoKeeper { keeper } => format!("keeper {keeper}"),
+            Self::Division { .. } => "division".to_owned(),
+            Self::Placement { .. } => "placement".to_owned(),
+            Self::Command { number } => format!("command {number}"),
+            Self::Unseen(robot) => format!("unseen {robot}"),
+            Self::Unheard(robot) => format!("unheard {robot}"),
+        }
+    }
+
+    /// Whether it is repeated while it lasts.
+    pub(super) const fn is_urgent(&self) -> bool {
+        matches!(
+            self,
+            Self::OtherColour { .. } | Self::NoKeeper { .. } | Self::Placement { .. } | Self::Command { .. }
+        )
+    }
+
+    /// The label that heads its line.
+    pub(super) const fn heading(&self) -> &'static str {
+        match self {
+            Self::Unseen(_) | Self::Unheard(_) => "robots",
+            _ => "referee",
+        }
+    }
+}
+
+impl fmt::Display for TeamFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let printable = foreign::printable;
+        match self {
+            Self::OtherColour { name, us, other } => write!(
+                f,
+                "the game controller has {} as {}, and {} as {}, which we play: correct the teams there, or start with --colour {}",
+                printable(name),
+                us.other().label(),
+                printable(other),
+                us.label(),
+                us.other().label()
+            ),
+            Self::NoKeeper { keeper } => write!(
+                f,
+                "the referee names robot {keeper} our keeper, and no camera sees it on the field; put it on, or name another \
+                 (--keeper, the game controller)"
+            ),
+            Self::Division { allowed, league, of_league } => write!(
+                f,
+                "the referee allows {allowed} robots, {} has {of_league}: start with --league division-a, or set the division in the \
+                 game controller",
+                league.name()
+            ),
+            Self::Placement { place: None } => f.write_str(
+                "a ball placement is commanded without a place: robots keep off the ball; give a place in the game controller",
+            ),
+            Self::Placement { place: Some(place) } => write!(
+                f,
+                "the ball is to be placed at ({:.2}, {:.2}) m, which no robot reaches, beyond the walls: robots keep off the ball; \
+                 place it by hand, or correct the place in the game controller",
+                place.x(),
+                place.y()
+            ),
+            Self::Command { number } => write!(
+                f,
+                "the referee sends command {number}, which this program does not know: robots halt; is the game controller newer than \
+                 this program?"
+            ),
+            Self::Unseen(robot) => write!(
+                f,
+                "robot {robot} is received by radio, and no camera sees it: it stands; look at its pattern and at the camera's view, or \
+                 switch it off"
+            ),
+            Self::Unheard(robot) => write!(
+                f,
+                "robot {robot} is seen by a camera, and radio does not receive it: it is not led; is it switched on, with our key and \
+                 its number?"
+            ),
+        }
+    }
+}
+
+/// State of the checks.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct TeamChecks {
+    keeper: Lasting,
+    colour: Lasting,
+    placement: Lasting,
+    /// Since when a robot is known by radio alone, or by vision alone.
+    unseen: [Option<Instant>; RobotId::COUNT],
+    unheard: [Option<Instant>; RobotId::COUNT],
+}
+
+impl TeamChecks {
+    /// The faults of now; `name`: our team's, where it is known.
+    pub(super) fn look(
+        &mut self,
+        now: Instant,
+        host: &Host,
+        name: Option<&str>,
+        sees: bool,
+    ) -> Vec<TeamFault> {
+        let mut faults = Vec::new();
+        faults.extend(self.other_colour(now, host, name));
+        faults.extend(division(host));
+        faults.extend(self.no_keeper(now, host, sees));
+        faults.extend(self.placement(now, host));
+        faults.extend(host.listener().unknown_command(now).map(|number| TeamFault::Command { number }));
+        self.apart(now, host, sees, &mut faults);
+        faults
+    }
+
+    fn other_colour(&mut self, now: Instant, host: &Host, name: Option<&str>) -> Option<TeamFault> {
+        let (us, game) = (host.settings().us, host.game());
+        let same =
+            |known: &str| name.is_some_and(|name| !name.is_empty() && known.eq_ignore_ascii_case(name));
+        let other = &game.team(us).name;
+        let swapped = same(&game.team(us.other()).name) && !same(other);
+        let fault =
+            || TeamFault::OtherColour { name: name.unwrap_or_default().to_owned(), us, other: other.clone() };
+        self.colour.see(now, swapped).then(fault)
+    }
+
+    fn no_keeper(&mut self, now: Instant, host: &Host, sees: bool) -> Option<TeamFault> {
+        let (us, game) = (host.settings().us, host.game());
+        let keeper = game.team(us).keeper;
+        let is_seen = |id| host.world().ours(us).any(|robot| robot.who.id == id && seen_lately(now, robot));
+        let plays = !matches!(game.phase, Phase::Halt | Phase::Timeout(_));
+        let others = host.world().ours(us).filter(|robot| seen_lately(now, robot)).count();
+        let missing = keeper.filter(|id| sees && plays && others > 0 && !is_seen(*id));
+        self.keeper
+            .see(now, missing.is_some())
+            .then_some(missing)
+            .flatten()
+            .map(|keeper| TeamFault::NoKeeper { keeper })
+    }
+
+    fn placement(&mut self, now: Instant, host: &Host) -> Option<TeamFault> {
+        let (game, field) = (host.game(), host.field());
+        let place = game.placement;
+        let beyond = |place: Point<Field>| field.clamp(place, -field.margin.max(field.goal_depth)) != place;
+        let wrong = matches!(game.phase, Phase::BallPlacement(_)) && place.is_none_or(beyond);
+        self.placement.see(now, wrong).then_some(TeamFault::Placement { place })
+    }
+
+    /// Robots that radio alone or vision alone knows.
+    fn apart(&mut self, now: Instant, host: &Host, sees: bool, faults: &mut Vec<TeamFault>) {
+        let us = host.settings().us;
+        let mut heard = [false; RobotId::COUNT];
+        host.radio().present(now).for_each(|robot| heard[robot.index()] = true);
+        let mut seen = [false; RobotId::COUNT];
+        let visible = host.world().ours(us).filter(|robot| seen_lately(now, robot));
+        visible.for_each(|robot| seen[robot.who.id.index()] = true);
+        let led = heard.contains(&true);
+        let lasts = |since: &mut Option<Instant>, holds: bool| {
+            *since = holds.then(|| since.unwrap_or(now));
+            since.is_some_and(|since| now.since(since) >= APART_AFTER)
+        };
+        for robot in RobotId::all() {
+            let (heard, seen) = (heard[robot.index()], seen[robot.index()]);
+            if lasts(&mut self.unseen[robot.index()], sees && heard && !seen) {
+                faults.push(TeamFault::Unseen(robot));
+            }
+            if lasts(&mut self.unheard[robot.index()], led && seen && !heard) {
+                faults.push(TeamFault::Unheard(robot));
+            }
+        }
+    }
+}
+
+fn seen_lately(now: Instant, robot: &crate::world::Robot) -> bool {
+    now.since(robot.seen) < SEEN_WITHIN
+}
+
+fn division(host: &Host) -> Option<TeamFault> {
+    let league = host.settings().league;
+    let of_league = u32::try_from(league.limits()?.robots).ok()?;
+    let allowed = host.game().team(host.settings().us).robots_allowed?;
+    (allowed > of_league).then_some(TeamFault::Division { allowed, league, of_league })
+}
