@@ -8,8 +8,6 @@ mod operator;
 mod terminal;
 
 use std::ffi::OsString;
-use std::fs::File;
-use std::io::{self, Write as _};
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
