@@ -1,10 +1,10 @@
 //! `qemu_free`: tests: a robot that runs by its own clock obeys its team's host and no other sender, stops
 //! when the host is silent, and recovers from a panic and from a task that hangs (docs/architecture.md §6.2).
 //!
-//! The firmware image `onetwo-mps2-free` under QEMU, its radio a serial line on the emulator's standard streams.
-//! Its clock counts instructions: on a machine too busy for real time it runs slower, and no watchdog bites for
-//! that. Timeouts are generous: awaited events must come, how soon depends on the machine. Needs QEMU and
-//! a compiler for the target.
+//! The firmware image `onetwo-mps2-free` under QEMU, its radio a serial line on the emulator's standard
+//! streams. Its clock counts instructions: on a machine too busy for real time it runs slower, and no
+//! watchdog bites for that. Timeouts are generous: awaited events must come, how soon depends on the machine.
+//! Needs QEMU and a compiler for the target.
 
 use std::fs;
 use std::io::{Read, Write};

@@ -42,7 +42,8 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     start_page(context, &environment)
 }
 
-/// The Python of the researcher's start page, which prints a case, the ranks of those that fit, and an outcome.
+/// The Python of the researcher's start page, which prints a case, the ranks of those that fit, and an
+/// outcome.
 fn start_page(context: &Context, environment: &Environment) -> Result<(), Failure> {
     let file = context.root().join(START_PAGE);
     let text = fs::read_to_string(&file).map_err(|error| Failure::at(&file, error))?;

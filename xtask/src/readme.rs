@@ -1,5 +1,6 @@
-//! `readme`: check of the documented commands: those of README and docs/commands.md that run the program are run,
-//! in the given order; those of the start pages by the test `start_pages`, which knows what the pages promise.
+//! `readme`: check of the documented commands: those of README and docs/commands.md that run the program are
+//! run, in the given order; those of the start pages by the test `start_pages`, which knows what the pages
+//! promise.
 
 use std::path::Path;
 use std::{fs, io};
@@ -27,7 +28,7 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     let started: Vec<_> = start.iter().flat_map(|text| commands(text)).collect();
     let others = first.iter().flat_map(|text| commands(text)).filter(|command| !started.contains(command));
     others.map(|command| run(&mut context.cargo(command))).collect::<Result<(), _>>()?;
-    let line = "test --workspace --features onetwo/png --test start_pages -- --include-ignored";
+    let line = "test --workspace --features onetwo/png --test start_pages";
     run(&mut context.cargo(line))
 }
 

@@ -1,5 +1,5 @@
-//! `start_pages`: the three start pages as a reader follows them: every command of their shell blocks to its end, every
-//! block of terminals beside each other, each held to what `promises.txt` says of it.
+//! `start_pages`: the three start pages as a reader follows them: every command of their shell blocks to its
+//! end, every block of terminals beside each other, each held to what `promises.txt` says of it.
 //!
 //! That builds and runs the release program in the clone, and takes ports 8080, 8082 and those of the league:
 //! `cargo xtask test --only readme` does it, plain `cargo test` does without.
@@ -13,43 +13,13 @@ use std::path::Path;
 use std::process::Command;
 
 use match_tests::workspace::root;
-use promises::{Promise, all, command_of, promised};
-
-const PAGES: [&str; 3] =
-    ["docs/start/league-team.md", "docs/start/cbr-researcher.md", "docs/start/embedded.md"];
+use promises::{PAGES, Promise, blocks, command_of, promised};
 
 fn texts() -> Vec<String> {
     PAGES.iter().map(|page| fs::read_to_string(root().join(page)).expect("a page")).collect()
 }
 
-/// The lines of each block of that kind.
-fn blocks<'t>(text: &'t str, kind: &str) -> Vec<Vec<&'t str>> {
-    let head = format!("{kind}\n");
-    let blocks = text.split("```").filter_map(|block| block.strip_prefix(&head));
-    blocks.map(|block| block.lines().collect()).collect()
-}
-
 #[test]
-fn every_command_of_a_start_page_has_a_promise_and_every_promise_a_command() {
-    let texts = texts();
-    let lines: Vec<&str> = texts
-        .iter()
-        .flat_map(|text| [blocks(text, "sh"), blocks(text, "terminals")])
-        .flatten()
-        .flatten()
-        .collect();
-    assert!(lines.len() > 20, "{lines:?}");
-    for line in &lines {
-        assert!(!promised(line).is_empty(), "nothing is promised of `{line}`");
-    }
-    for (command, promises) in all() {
-        assert!(!promises.is_empty(), "`{command}` is no promise");
-        assert!(lines.iter().any(|line| command_of(line) == command), "no start page has `{command}`");
-    }
-}
-
-#[test]
-#[ignore = "builds the release program and runs it for minutes: cargo xtask test --only readme"]
 fn every_command_of_the_start_pages_does_what_they_say() {
     let texts = texts();
     let mut printed = BTreeMap::new();

@@ -1,5 +1,6 @@
-//! `terminals`: blocks of the start pages whose commands run beside each other, each in a terminal of its own until
-//! Ctrl-C: all are started in their order, each once the one before shows what is promised of it, and then ended.
+//! `terminals`: blocks of the start pages whose commands run beside each other, each in a terminal of its own
+//! until Ctrl-C: all are started in their order, each once the one before shows what is promised of it, and
+//! then ended.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead as _, BufReader, Read, Write as _};
