@@ -1,10 +1,9 @@
 //! `qemu_free`: tests: a robot that runs by its own clock obeys its team's host and no other sender, stops
 //! when the host is silent, and recovers from a panic and from a task that hangs (docs/architecture.md §6.2).
 //!
-//! The firmware image `onetwo-mps2-free` under QEMU, its radio a serial line on the emulator's standard streams.
-//! Its clock counts instructions: on a machine too busy for real time it runs slower, and no watchdog bites for
-//! that. Timeouts are generous: awaited events must come, how soon depends on the machine. Needs QEMU and
-//! a compiler for the target.
+//! The firmware image `onetwo-mps2-free` under QEMU in real time, its radio a serial line on the emulator's
+//! standard streams. Timeouts are generous: awaited events must come, how soon depends on the machine. Needs
+//! QEMU and a compiler for the target.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -17,7 +16,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use firmware_build::inspect::STACK_BUDGET;
-use firmware_build::{Install, MACHINE, Program, REAL_TIME, build_program, ensure_qemu, workspace_root};
+use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
 use match_tests::bad_line::{BadLine, Trouble};
 use protocol::frame::TeamKey;
 use protocol::host::{Condition, Directive, HostCommand, HostMessage, RuleRole, Telemetry, Welcome};
@@ -169,7 +168,7 @@ impl Robot {
         let qemu = ensure_qemu(Install::ForUser).unwrap_or_else(|error| panic!("{error}"));
         let mut child = Process::new(qemu)
             .args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "stdio"])
-            .args(["-icount", REAL_TIME, "-semihosting-config", "enable=on,target=native", "-kernel"])
+            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
             .arg(&*IMAGE)
             .args(["-device", &format!("loader,file={},addr={PAGE_ADDRESS:#x},force-raw=on", file.display())])
             .args(["-device", &format!("loader,addr={TRIAL_ADDRESS:#x},data={trial},data-len=4")])

@@ -1,6 +1,10 @@
 //! `readme`: tests: README's commands are those that are run, and the table of crates names every one.
 
+#[path = "start_pages/promises.rs"]
+mod promises;
+
 use match_tests::workspace::{Source, members, root};
+use promises::{PAGES, all, blocks, command_of, promised};
 
 #[test]
 fn the_two_commands_come_first_and_are_the_ones_we_check() {
@@ -33,6 +37,21 @@ fn every_command_in_a_shell_block_runs_the_program_or_is_xtasks() {
                 ["cargo run --release -- ", "cargo xtask "].iter().any(|start| command.starts_with(start));
             assert!(known, "{page}: `{command}` is neither the program nor xtask");
         }
+    }
+}
+
+#[test]
+fn every_command_of_a_start_page_has_a_promise_and_every_promise_a_command() {
+    let texts = PAGES.map(read);
+    let of = |text| [blocks(text, "sh"), blocks(text, "terminals")].concat().concat();
+    let lines: Vec<&str> = texts.iter().flat_map(|text| of(text)).collect();
+    assert!(lines.len() > 20, "{lines:?}");
+    for line in &lines {
+        assert!(!promised(line).is_empty(), "nothing is promised of `{line}`");
+    }
+    for (command, promises) in all() {
+        assert!(!promises.is_empty(), "`{command}` is no promise");
+        assert!(lines.iter().any(|line| command_of(line) == command), "no start page has `{command}`");
     }
 }
 

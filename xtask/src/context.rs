@@ -87,6 +87,17 @@ pub(crate) fn run(command: &mut Command) -> Result<(), Failure> {
     }
 }
 
+/// Runs a command to its end; its standard output.
+pub(crate) fn output_of(command: &mut Command) -> Result<String, Failure> {
+    let line = line_of(command);
+    println!("xtask: {line}");
+    match command.stdin(Stdio::null()).stderr(Stdio::inherit()).output() {
+        Ok(output) if output.status.success() => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        Ok(output) => Err(Failure::Command { line, status: output.status }),
+        Err(error) => Err(Failure::Start { line, error }),
+    }
+}
+
 /// Why a step failed.
 #[derive(Debug, Error)]
 pub(crate) enum Failure {

@@ -6,9 +6,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
-use crate::context::{Context, Failure, line_of, run};
+use crate::context::{Context, Failure, output_of, run};
 
 /// What holds when the step passes.
 pub(crate) const WHAT: &str =
@@ -22,7 +22,7 @@ const PROGRAM_MAX: u64 = 20_000_000;
 /// Counts and weighs.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     let mut tree = context.cargo("tree --locked -p onetwo -e normal,build --prefix none --no-dedupe");
-    let crates = crates(&answer(&mut tree)?);
+    let crates = crates(&output_of(&mut tree)?);
     run(&mut context.cargo("build --release --bin onetwo"))?;
     let built = firmware_build::target_dir(context.root());
     let program = built.join("release").join(format!("onetwo{}", std::env::consts::EXE_SUFFIX));
@@ -35,15 +35,6 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     );
     let faults = faults(&crates, size);
     if faults.is_empty() { Ok(()) } else { Err(Failure::Budget(faults.join("; "))) }
-}
-
-fn answer(command: &mut Command) -> Result<String, Failure> {
-    let line = line_of(command);
-    match command.stdin(Stdio::null()).stderr(Stdio::inherit()).output() {
-        Ok(output) if output.status.success() => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
-        Ok(output) => Err(Failure::Command { line, status: output.status }),
-        Err(error) => Err(Failure::Start { line, error }),
-    }
 }
 
 /// Name and version of each crate of a tree.

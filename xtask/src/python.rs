@@ -4,12 +4,12 @@
 //! Crates of others are in the shared target directory already; ours are built again, because cargo tells
 //! crates of two workspaces apart.
 
-use std::env;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::{env, fs};
 
-use crate::context::{Context, Failure, run};
+use crate::context::{Context, Failure, output_of, run};
 
 /// The property checked by the step.
 pub(crate) const WHAT: &str =
@@ -38,7 +38,34 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     let mut tests = environment.python(context);
     tests.args(["-m", "unittest", "discover", "--start-directory"]).arg(format!("{PACKAGE}/tests"));
     let program = format!("onetwo{}", env::consts::EXE_SUFFIX);
-    run(tests.env("ONETWO", environment.target.join("release").join(program)))
+    run(tests.env("ONETWO", environment.target.join("release").join(program)))?;
+    start_page(context, &environment)
+}
+
+/// The Python of the researcher's start page, which prints a case, the ranks of those that fit, and an
+/// outcome.
+fn start_page(context: &Context, environment: &Environment) -> Result<(), Failure> {
+    let file = context.root().join(START_PAGE);
+    let text = fs::read_to_string(&file).map_err(|error| Failure::at(&file, error))?;
+    let code = code_of(&text).ok_or_else(|| Failure::Documentation(format!("{START_PAGE} has no Python")))?;
+    let printed = output_of(environment.python(context).args(["-c", code]))?;
+    println!("{printed}");
+    let lines: Vec<_> = printed.lines().collect();
+    match lines[..] {
+        [case, first, .., others, _]
+            if case.contains('/')
+                && first.starts_with("1 ")
+                && others.contains("another place of the ball") =>
+        {
+            Ok(())
+        }
+        _ => Err(Failure::Documentation(format!("the Python of {START_PAGE} prints otherwise: {printed}"))),
+    }
+}
+
+/// The first block of Python of a page.
+fn code_of(page: &str) -> Option<&str> {
+    page.split_once("```python\n")?.1.split("```").next()
 }
 
 /// The virtual environment with what building and testing need.
@@ -108,6 +135,8 @@ fn is_fit(python: &Path) -> bool {
     question.status().is_ok_and(|status| status.success())
 }
 
+/// The start page whose Python is run.
+const START_PAGE: &str = "docs/start/cbr-researcher.md";
 /// The package, from the workspace's root.
 const PACKAGE: &str = "./host/python";
 /// The same for cargo: a workspace of its own.
@@ -126,6 +155,12 @@ mod tests {
     fn what_is_no_python_is_not_taken() {
         assert!(!is_fit(Path::new("onetwo-has-no-such-program")));
         assert!(!is_fit(Path::new("false")));
+    }
+
+    #[test]
+    fn a_pages_first_block_of_python_is_its_code() {
+        assert_eq!(code_of("a\n```sh\nb\n```\n```python\nimport c\nd\n```\n"), Some("import c\nd\n"));
+        assert_eq!(code_of("a"), None);
     }
 
     #[test]

@@ -1,5 +1,6 @@
-//! `readme`: check of the documented commands: those of README, docs/commands.md and docs/start that run the
-//! program are run, in the given order.
+//! `readme`: check of the documented commands: those of README and docs/commands.md that run the program are
+//! run, in the given order; those of the start pages by the test `start_pages`, which knows what the pages
+//! promise.
 
 use std::path::Path;
 use std::{fs, io};
@@ -8,10 +9,11 @@ use crate::context::{Context, Failure, run};
 
 /// The property checked by the step.
 pub(crate) const WHAT: &str =
-    "the commands of README, docs/commands.md and docs/start run, README's first one among them";
+    "the commands of README and docs/commands.md run, and those of docs/start do what the pages say";
 
 /// Runs every `cargo run` of the pages' shell blocks; the xtask commands beside them are this program. What
-/// they write is cleared first: results that another commit has left are refused.
+/// they write is cleared first: results that another commit has left are refused. A command that a start page
+/// has too is run there alone.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     let texts = PAGES.map(|page| {
         let file = context.root().join(page);
@@ -22,7 +24,12 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
         let place = context.root().join(result);
         clear(&place).map_err(|error| Failure::at(&place, error))?;
     }
-    texts.iter().flat_map(|text| commands(text)).try_for_each(|command| run(&mut context.cargo(command)))
+    let (first, start) = texts.split_at(PAGES.len() - START_PAGES);
+    let started: Vec<_> = start.iter().flat_map(|text| commands(text)).collect();
+    let others = first.iter().flat_map(|text| commands(text)).filter(|command| !started.contains(command));
+    others.map(|command| run(&mut context.cargo(command))).collect::<Result<(), _>>()?;
+    let line = "test --workspace --features onetwo/png --test start_pages";
+    run(&mut context.cargo(line))
 }
 
 /// Where a command writes, if that is below `out`.
@@ -40,6 +47,8 @@ fn clear(place: &Path) -> io::Result<()> {
     removed.or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })
 }
 
+/// Number of start pages, the last of [`PAGES`].
+const START_PAGES: usize = 3;
 /// Pages whose commands are run; tests/tests/readme.rs reads this list.
 const PAGES: [&str; 5] = [
     "README.md",

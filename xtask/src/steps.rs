@@ -29,11 +29,7 @@ pub(crate) const STEPS: [Step; 17] = [
         run: test,
     },
     Step { name: "doc", what: "the documentation builds without a warning or a broken link", run: doc },
-    Step {
-        name: "thumb",
-        what: "the robot's crates and a board's examples build for its processor",
-        run: thumb,
-    },
+    Step { name: "thumb", what: "programs for trying a board's parts link for its processor", run: thumb },
     Step { name: "clippy-thumb", what: "the linter has no warning, on the robot's side", run: clippy_thumb },
     Step { name: "doc-thumb", what: "the boards' documentation builds likewise", run: doc_thumb },
     Step { name: "image", what: images::WHAT, run: image },
@@ -81,8 +77,7 @@ fn doc_thumb(context: &Context) -> Result<(), Failure> {
 }
 
 fn thumb(context: &Context) -> Result<(), Failure> {
-    run(&mut context.cargo_thumb(&format!("build{FIRMWARE}{}", packages(&ON_ROBOT)))?)?;
-    // Programs for testing a board's parts, which must link too.
+    // The robot's crates alone are checked by `clippy-thumb`, and their code is generated for each image.
     with_examples(context)
         .try_for_each(|board| run(&mut context.cargo_board("build", board, "--examples")?))
 }

@@ -33,7 +33,7 @@ pub use image::{
     target_dir,
 };
 pub use new_board::{CHIPS, ChipTemplate, NewBoard, NewBoardError, new_board};
-pub use qemu::{MACHINE, QEMU, QemuError, REAL_TIME, ensure_qemu};
+pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
 pub use target::{TargetError, ThumbToolchain, ensure_target, ensure_target_of};
 
 /// Places to which a missing tool may be installed.

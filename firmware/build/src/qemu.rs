@@ -71,10 +71,6 @@ pub enum QemuError {
 pub const QEMU: &str = "qemu-system-arm";
 /// The emulated board: Arm MPS2 with the AN386 FPGA configuration, a Cortex-M4F.
 pub const MACHINE: &str = "mps2-an386";
-/// `-icount` for a robot beside programs in real time: an instruction takes 2⁶ = 64 ns of the robot's clock, and the
-/// clock follows the computer's only while the processor sleeps. On a busy computer the robot is slower, and its
-/// watchdog does not bite for that.
-pub const REAL_TIME: &str = "shift=6,align=off,sleep=on";
 
 const HOW_TO_INSTALL: &str = "\
 install it, for example with

@@ -358,7 +358,6 @@ fn halts_under(field: &mut Field, frames: &Receiver<(Instant, bool)>, flooded: V
         let Waited { latency, stale_frames } = wait_for(frames, true, since);
         took.push(latency);
         stale.push(stale_frames);
-        thread::sleep(Duration::from_millis(100));
         controller.send_command(Wire::Stop);
         wait_for(frames, false, Instant::now());
         most = most.max(field.memory());
@@ -385,8 +384,6 @@ fn halts_under(field: &mut Field, frames: &Receiver<(Instant, bool)>, flooded: V
 fn finding_3_halt_does_not_wait_behind_a_flood_of_camera_frames() {
     let frames: Vec<_> = (0..64).map(|number| camera_frame(number + 1_000_000, 300)).collect();
     assert!((8_000..10_240).contains(&frames[0].len()), "{} bytes", frames[0].len());
-    // Whether frames are dropped depends on the machine; that drops are counted and told, the tests of inbox
-    // and alarms show.
     let (robots, received) = station();
     halts_under(&mut Field::start(&format!("udp://{robots}"), &[]), &received, frames);
 }
@@ -443,6 +440,8 @@ fn a_pinned_referee_is_obeyed_and_the_other_one_reported() {
 fn finding_10_on_a_slow_line_halt_overtakes_snapshots_and_the_rate_is_told() {
     /// Bytes a second of a line with 115,200 bit/s.
     const RATE: f64 = 11_520.0;
+    /// Frames that are read at most until a HALT is among them.
+    const FRAMES_MAX: usize = 10_000;
     /// Bytes that may come before HALT: 0.2 s of the line; 22,000 before.
     const STALE_MAX: u64 = 2_304;
     let began = Instant::now();
@@ -451,8 +450,7 @@ fn finding_10_on_a_slow_line_halt_overtakes_snapshots_and_the_rate_is_told() {
     let mut field = Field::start(&format!("serial:{}:115200", device.display()), &[]);
     let end = Arc::new(AtomicBool::new(false));
     let read = Arc::new(AtomicU64::new(0));
-    // The base station takes what comes at once: the host alone keeps to the line's rate. For each frame: HALT or not,
-    // and bytes so far.
+    // The base station takes what comes: the host alone keeps to the rate. HALT or not, and bytes so far.
     let (send, frames) = channel();
     let (count, stop) = (read.clone(), end.clone());
     thread::spawn(move || {
@@ -487,14 +485,8 @@ fn finding_10_on_a_slow_line_halt_overtakes_snapshots_and_the_rate_is_told() {
         while frames.try_recv().is_ok() {}
         let before = read.load(Ordering::Relaxed);
         controller.send_command(Wire::Halt);
-        let until = Instant::now() + PATIENCE;
-        let at = loop {
-            match frames.recv_timeout(until.saturating_duration_since(Instant::now())) {
-                Ok((at, true)) => break at,
-                Ok(_) => {}
-                Err(error) => panic!("no HALT comes: {error}"),
-            }
-        };
+        let all = std::iter::repeat_with(|| frames.recv_timeout(PATIENCE).expect("a frame"));
+        let at = all.take(FRAMES_MAX).find(|(_, halt)| *halt).expect("a HALT").0;
         stale.push(at - before);
         controller.send_command(Wire::Stop);
         line_carries(0.4);

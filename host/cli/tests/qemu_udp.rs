@@ -4,9 +4,8 @@
 //! The built program four times: simulator, the images (`firmware run --udp`), their host, and the opponents'
 //! host with six native robots. Each image writes down what its brain took in and gave out; afterwards a
 //! native brain gets the same at the same times, and every packet and every order is compared bit by bit. How
-//! well the match is played depends on the machine, equality does not: a robot's clock counts its instructions
-//! (`firmware_build::REAL_TIME`), so that it is slower where its emulator gets too little of the processor, and
-//! the length is counted in the robots' own steps.
+//! well the match is played depends on the machine, equality does not: an emulator that gets too little of
+//! the processor loses ticks of its clock, so that the length is counted in the robots' own steps.
 //!
 //! `ONETWO_MATCH_SECONDS=60 cargo test --release -p onetwo --test qemu_udp -- --nocapture`
 //! plays longer. Needs QEMU and a compiler for the target.

@@ -33,8 +33,9 @@ fn in_tmp(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 
-/// The example as a program of several lives, with its files in a directory. Answers of life N begin with N blanks, so
-/// that a trace tells which life gave them; the life after `killed` was made takes half a second to begin.
+/// The example as a program of several lives, with its files in a directory. Answers of life N begin with N
+/// blanks, so that a trace tells which life gave them; the life after `killed` was made takes half a second
+/// to begin.
 struct Mortal {
     directory: PathBuf,
 }

@@ -20,8 +20,8 @@ type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
 const ATTACKERS: usize = 300;
 /// Longer than any test: a limit of this length has no effect.
 const NEVER: Duration = Duration::from_hours(1);
-/// A short limit, for what is to be closed. Genuine requests may miss it too on a loaded machine: they are sent until
-/// one is in time.
+/// A short limit, for what is to be closed. Genuine requests may miss it too on a loaded machine: they are
+/// sent until one is in time.
 const SOON: Duration = Duration::from_millis(300);
 /// Time after which a test gives up.
 const PATIENCE: Duration = Duration::from_mins(1);

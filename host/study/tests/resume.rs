@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
@@ -51,17 +52,29 @@ fn learned_within(directory: &Path, shard: Shard, threads: usize, patience: Dura
     })
 }
 
+/// The run in one process on one thread, which all others are compared with.
+struct Alone {
+    learned: String,
+    journal: Vec<u8>,
+}
+
+static ALONE: LazyLock<Alone> = LazyLock::new(|| {
+    let directory = directory("alone");
+    let learned = learned(&directory, Shard::WHOLE, 1);
+    let journal = fs::read(directory.join("journal-1-of-1.jsonl")).unwrap();
+    fs::remove_dir_all(directory).unwrap();
+    Alone { learned, journal }
+});
+
 #[test]
 fn threads_shards_and_interrupts_change_nothing() {
-    let one = directory("one");
-    let first = learned(&one, Shard::WHOLE, 1);
+    let Alone { learned: first, journal: text } = &*ALONE;
     assert!(first.contains("\"unconfirmed\"") || first.contains("\"screened-out\""));
 
     let two = directory("two");
-    let text = fs::read(one.join("journal-1-of-1.jsonl")).unwrap();
     // Killed in the middle of a line, at a third of the run.
     fs::write(two.join("journal-1-of-1.jsonl"), &text[..text.len() / 3]).unwrap();
-    assert_eq!(learned(&two, Shard::WHOLE, 2), first, "two threads, killed and resumed");
+    assert_eq!(learned(&two, Shard::WHOLE, 2), *first, "two threads, killed and resumed");
 
     let shared = directory("shared");
     let shards = [1, 2].map(|i| Shard::new(i, 2).unwrap());
@@ -70,10 +83,10 @@ fn threads_shards_and_interrupts_change_nothing() {
         let handles = shards.map(|shard| scope.spawn(move || learned(shared, shard, 1)));
         handles.map(|handle| handle.join().unwrap())
     });
-    assert_eq!(results, [first.clone(), first], "two shards");
+    assert_eq!(results, [first.clone(), first.clone()], "two shards");
 
     let other: Result<JournalPlayer<'_>, _> =
-        JournalPlayer::open(&one, "{\"run\":2}", Shard::WHOLE, 4, &STOPPED, &|_| {});
+        JournalPlayer::open(&two, "{\"run\":2}", Shard::WHOLE, 4, &STOPPED, &|_| {});
     let error = other.unwrap_err();
     assert!(matches!(error, PlayError::OtherRun { .. }), "{error}");
     assert!(
@@ -81,7 +94,7 @@ fn threads_shards_and_interrupts_change_nothing() {
             .to_string()
             .ends_with("journal-1-of-1.jsonl is of another run: run 1, not 2; take another --out")
     );
-    for directory in [one, two, shared] {
+    for directory in [two, shared] {
         fs::remove_dir_all(directory).unwrap();
     }
 }
@@ -96,9 +109,8 @@ fn units_kept(directory: &Path, shard: &str) -> usize {
 
 #[test]
 fn a_shard_that_never_starts_or_starts_last_changes_nothing() {
-    let alone = directory("alone");
-    let expected = learned(&alone, Shard::WHOLE, 2);
-    let units = units_kept(&alone, "1-of-1");
+    let expected = &ALONE.learned;
+    let units = String::from_utf8_lossy(&ALONE.journal).lines().count() - 1;
 
     let shared = directory("absent");
     let short = Duration::from_millis(200);
@@ -110,14 +122,14 @@ fn a_shard_that_never_starts_or_starts_last_changes_nothing() {
     assert_eq!(two, [expected.clone(), expected.clone()], "the second of three never starts");
     let played = units_kept(&shared, "1-of-3") + units_kept(&shared, "3-of-3");
     assert!((units..2 * units).contains(&played), "{played} units played, {units} needed");
-    assert_eq!(learned(&shared, third(2), 1), expected, "it starts when the others are over");
+    assert_eq!(learned(&shared, third(2), 1), *expected, "it starts when the others are over");
     assert_eq!(units_kept(&shared, "2-of-3"), 0, "and plays nothing again");
-    assert_eq!(learned(&shared, Shard::WHOLE, 1), expected, "one process reads all shards");
+    assert_eq!(learned(&shared, Shard::WHOLE, 1), *expected, "one process reads all shards");
     assert_eq!(units_kept(&shared, "1-of-1"), 0);
 
     // One of three shards was played and is lost, another one is damaged, a third one of another run.
     fs::remove_file(shared.join("journal-1-of-3.jsonl")).unwrap();
-    assert_eq!(learned(&shared, Shard::WHOLE, 2), expected, "what is lost is played again");
+    assert_eq!(learned(&shared, Shard::WHOLE, 2), *expected, "what is lost is played again");
     let damaged = shared.join("journal-2-of-3.jsonl");
     fs::write(&damaged, "{\"run\":1}\n{\"unit\":7,\n").unwrap();
     let settings = settings();
@@ -132,7 +144,5 @@ fn a_shard_that_never_starts_or_starts_last_changes_nothing() {
     fs::write(&damaged, "{\"run\":1,\"world\":\"5\"}\n").unwrap();
     let error = refused();
     assert!(error.contains("journal-2-of-3.jsonl is of another run: world \"5\", not null;"), "{error}");
-    for directory in [alone, shared] {
-        fs::remove_dir_all(directory).unwrap();
-    }
+    fs::remove_dir_all(shared).unwrap();
 }

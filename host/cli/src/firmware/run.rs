@@ -11,7 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use firmware_build::{Install, MACHINE, Program, REAL_TIME, ensure_qemu};
+use firmware_build::{Install, MACHINE, Program, ensure_qemu};
 use protocol::provision::{Provision, read};
 use protocol::slot::PAGE_ADDRESS;
 
@@ -92,11 +92,10 @@ fn check(file: &Path) -> Result<Provision, Failure> {
 
 /// Arguments of QEMU.
 fn qemu_arguments(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String> {
-    let mut arguments: Vec<String> = [
-        "-machine", MACHINE, "-icount", REAL_TIME, "-display", "none", "-monitor", "none", "-serial", serial,
-    ]
-    .map(str::to_owned)
-    .into();
+    let mut arguments: Vec<String> =
+        ["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", serial]
+            .map(str::to_owned)
+            .into();
     arguments.extend(["-semihosting-config", "enable=on,target=native", "-kernel"].map(str::to_owned));
     arguments.push(image.display().to_string());
     if let Some(file) = page {
