@@ -24,6 +24,7 @@ macro_rules! emergency_stop {
 /// Declares `crash_record` and the handlers of panics and hard faults: the emergency stop, then the place kept
 /// in the chip's backup registers and reported, then a restart.
 #[macro_export]
+#[allow(clippy::crate_in_macro_def, reason = "the stop is the board's own: its module `off`")]
 macro_rules! fault_handlers {
     (backup registers: $registers:literal, cause of the reset: $status:ident, $watchdog:ident) => {
         /// Counts this start; must be called once, after the clocks are started.

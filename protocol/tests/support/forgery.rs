@@ -15,7 +15,6 @@ use rules::Phase;
 
 const TEAM: TeamId = TeamId(1);
 const KEY: TeamKey = TeamKey([0x5a; 16]);
-/// First boot epoch of the robot.
 const FIRST_BOOT_EPOCH: u32 = 9;
 /// First epoch of the host.
 const FIRST_HOST: u32 = 70;

@@ -60,8 +60,6 @@ pub struct RefereeSettings {
     /// Send `designated_position` whenever a place is known, in every command, as the real game controller
     /// does (contrary to its own documentation), instead of in ball placement only.
     pub position_always: bool,
-    /// Announce a goal by one packet with the old commands `GOAL_*`, as the real game controller does.
-    pub legacy_goal_command: bool,
     /// Added to simulated time to give the packets' timestamps, µs: 0, or Unix time at the simulation's
     /// start.
     pub epoch_us: u64,
@@ -102,7 +100,6 @@ impl RefereeSettings {
             max_robots: None,
             judge_manual_fouls: true,
             position_always: true,
-            legacy_goal_command: true,
             epoch_us: 0,
             person_delay: Duration::millis(2_000),
             patience: Duration::millis(10_000),

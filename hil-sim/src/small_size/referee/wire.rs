@@ -67,9 +67,6 @@ impl InternalReferee {
     /// One packet with the obsolete command for a goal, as the real game controller sends; the current
     /// command follows with the same count.
     pub(super) fn announce_goal(&mut self, team: Colour) {
-        if !self.settings.legacy_goal_command {
-            return;
-        }
         self.command_counter += 1;
         self.command_at = self.now;
         let goal = team.pick(wire::Command::GoalYellow, wire::Command::GoalBlue);

@@ -11,9 +11,7 @@ use super::identity::Identity;
 use super::labels;
 use super::plan::Planned;
 use crate::store::{Difference, Row};
-use arena::DefaultReport;
-use arena::Profile;
-use arena::{CycleReport, TrialReport};
+use arena::{CycleReport, DefaultReport, Profile, TrialReport};
 
 /// Identity and measures of one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,9 +7,7 @@ use super::identity::Identity;
 use super::plan::{EvaluationPlan, Planned};
 use super::row::TrialRow;
 use crate::store::{EvaluationError, Experiment, Shard, StoredExperiment};
-use arena::CaseNames;
-use arena::Setup;
-use arena::{TrialConfig, positioning_label, run};
+use arena::{CaseNames, Setup, TrialConfig, positioning_label, run};
 
 /// All settings that the trials of an evaluation depend on.
 #[derive(Clone, Debug)]

@@ -8,9 +8,7 @@ use brain::Approach;
 use hil_sim::{Configuration, TrialOutcome};
 
 use super::row::TrialRow;
-use arena::CycleEnd;
-use arena::Profile;
-use arena::approach_label;
+use arena::{CycleEnd, Profile, approach_label};
 
 /// A case in all trials of a kind.
 #[derive(Clone, Debug, PartialEq)]

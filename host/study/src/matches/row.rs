@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 use host::strategy::counters::{CapCounters, PlayCounters};
 use serde::{Deserialize, Serialize};
 
-use super::MatchIdentity;
 use super::match_team::MatchTeam;
-use super::passes;
 use super::plan::Planned;
+use super::{MatchIdentity, passes};
 use crate::store::{Difference, Row};
 use arena::game::{GameReport, TeamReport};
 
