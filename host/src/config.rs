@@ -340,11 +340,15 @@ impl RobotLink {
             )
         };
         if let Some(host) = text.strip_prefix("sim://") {
-            return if host.is_empty() { Err(wrong()) } else { Ok(Self::Simulator(host.to_owned())) };
+            return if host.is_empty() || host.ends_with(":0") {
+                Err(wrong())
+            } else {
+                Ok(Self::Simulator(host.to_owned()))
+            };
         }
         if let Some(address) = text.strip_prefix("udp://") {
             let (host, port) = address.rsplit_once(':').ok_or_else(wrong)?;
-            let known = !host.is_empty() && port.parse::<u16>().is_ok();
+            let known = !["", "::", "[::]"].contains(&host) && port.parse::<u16>().is_ok_and(|port| port > 0);
             return if known { Ok(Self::Udp(address.to_owned())) } else { Err(wrong()) };
         }
         let line = text.strip_prefix("serial:").ok_or_else(wrong)?;
@@ -379,6 +383,20 @@ mod tests {
         assert_eq!(config.referee_source, Some(SourcePin::of("192.168.1.5")));
         assert_eq!(config.referee_silence, OnSilence::Halt);
         assert_eq!(config.game_controller.unwrap().port(), 10_008);
+    }
+
+    #[test]
+    fn a_link_leads_to_a_machine_and_a_port_that_there_can_be() {
+        for text in
+            ["udp://127.0.0.1:0", "udp://:::9", "udp://[::]:9", "udp://:9", "sim://127.0.0.1:0", "sim://"]
+        {
+            assert!(RobotLink::parse(text).is_err(), "{text}");
+        }
+        for text in
+            ["udp://127.0.0.1:1", "udp://[::1]:9", "udp://base.local:65535", "sim://127.0.0.1:10", "sim://h"]
+        {
+            assert!(RobotLink::parse(text).is_ok(), "{text}");
+        }
     }
 
     #[test]
