@@ -104,10 +104,10 @@ impl FileKind {
         }
     }
 
-    /// Kind of an existing file; none of one that is empty, absent, a device or a pipe.
+    /// Kind of an existing file; none of one that is empty, absent, a device, a pipe or a directory:
+    /// to the last no file is written.
     fn of_file(path: &Path) -> io::Result<Option<Self>> {
         match fs::metadata(path) {
-            Ok(there) if there.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
             Ok(there) if there.is_file() => {}
             Ok(_) => return Ok(None),
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
