@@ -93,7 +93,7 @@ impl FileKind {
             Self::Html
         } else if lower.starts_with('<') && lower.contains("<svg") {
             Self::Svg
-        } else if text.starts_with('{') {
+        } else if text.starts_with('{') || begins_list(text) {
             Self::Json
         } else if is_toml(statement) {
             Self::Toml
@@ -104,10 +104,10 @@ impl FileKind {
         }
     }
 
-    /// Kind of an existing file; none of one that is empty, absent, a device or a pipe.
+    /// Kind of an existing file; none of one that is empty, absent, a device, a pipe or a directory:
+    /// to the last no file is written.
     fn of_file(path: &Path) -> io::Result<Option<Self>> {
         match fs::metadata(path) {
-            Ok(there) if there.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
             Ok(there) if there.is_file() => {}
             Ok(_) => return Ok(None),
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -117,7 +117,12 @@ impl FileKind {
         if !begin.starts_with(&[0x1f, 0x8b]) {
             return Ok(Self::of(&begin));
         }
-        let begin = first_bytes(MultiGzDecoder::new(foreign::open(path)?)).unwrap_or_default();
+        // A recording that was cut gives what there is of it.
+        let mut begin = Vec::new();
+        let _ = MultiGzDecoder::new(foreign::open(path)?).take(BEGIN_LEN).read_to_end(&mut begin);
+        if begin.is_empty() {
+            return Ok(None);
+        }
         let recorded = Self::of(&begin).filter(|kind| matches!(kind, Self::Trace | Self::LeagueLog));
         Ok(Some(recorded.unwrap_or(Self::Bytes)))
     }
@@ -127,6 +132,11 @@ fn first_bytes(source: impl io::Read) -> io::Result<Vec<u8>> {
     let mut begin = Vec::new();
     source.take(BEGIN_LEN).read_to_end(&mut begin)?;
     Ok(begin)
+}
+
+/// True of the list of a JSON text, which is no table's name in TOML.
+fn begins_list(text: &str) -> bool {
+    text.strip_prefix('[').is_some_and(|rest| rest.starts_with(['\n', '\r', '{', ']']))
 }
 
 /// True of `[table]` and of `key = value`.
@@ -338,19 +348,23 @@ mod tests {
     fn a_file_is_of_the_kind_that_its_first_bytes_say() {
         let directory = directory("kinds");
         let file = directory.join("file");
-        let kinds: [(&[u8], Option<FileKind>); 20] = [
+        let kinds: [(&[u8], Option<FileKind>); 24] = [
             (b"", None),
             (b"ONETWO_TRACE\x02\0\0\0", Some(FileKind::Trace)),
             (&gzipped(b"ONETWO_TRACE\x02\0\0\0"), Some(FileKind::Trace)),
             (b"SSL_LOG_FILE\0\0\0\x01", Some(FileKind::LeagueLog)),
             (&gzipped(b"SSL_LOG_FILE\0\0\0\x01"), Some(FileKind::LeagueLog)),
             (&gzipped(b"my thesis"), Some(FileKind::Bytes)),
+            (&gzipped(b"ONETWO_TRACE\x02\0\0\0")[..30], Some(FileKind::Trace)),
+            (&gzipped(b"ONETWO_TRACE")[..11], None),
             (b"000102030405060708090a0b0c0d0e0f\r\n", Some(FileKind::Key)),
             (b"\xef\xbb\xbf000102030405060708090A0B0C0D0E0F", Some(FileKind::Key)),
             (b"<svg xmlns=\"http://www.w3.org/2000/svg\">", Some(FileKind::Svg)),
             (b"<?xml version=\"1.0\"?>\n<svg>", Some(FileKind::Svg)),
             (b"<!DOCTYPE html><svg>", Some(FileKind::Html)),
             (b"{\"ball\":[0,0]}\n", Some(FileKind::Json)),
+            (b"[\n  {\n    \"a\": 1", Some(FileKind::Json)),
+            (b"[[calibration]]\nrobot = 3\n", Some(FileKind::Toml)),
             (b"# our team\n\nkeeper = 2\n", Some(FileKind::Toml)),
             (b"[wheels] # four\nradius = 0.027\n", Some(FileKind::Toml)),
             (b"distance_m,counts\n1.0,25000\n", Some(FileKind::Csv)),

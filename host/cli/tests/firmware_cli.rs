@@ -48,8 +48,17 @@ fn the_page_that_is_written_is_the_one_a_robot_reads_and_its_owner_alone_may() {
     fs::write(&key, "000102030405060708090a0b0c0d0e0f\n").expect("a file");
     let description =
         ["firmware", "provision", "--robot", "5", "--team", "2", "--key-file", &key, "--out", &page];
-    // An existing file that is open to all is closed to others.
+    // A file that is no page stays; an existing page that is open to all is closed to others.
     fs::write(&page, "old").expect("a file");
+    assert_eq!(onetwo(&description).status.code(), Some(1));
+    assert_eq!(fs::read(&page).expect("it is there"), b"old");
+    fs::remove_file(&page).expect("a file");
+    assert!(onetwo(&description).status.success());
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        fs::set_permissions(&page, fs::Permissions::from_mode(0o644)).expect("a mode");
+    }
     let reported = onetwo(&description);
     assert!(reported.status.success(), "{}", String::from_utf8_lossy(&reported.stderr));
     let who = read(&fs::read(&page).expect("the page"), false).expect("a robot can read it");

@@ -97,6 +97,14 @@ fn left(bytes: &[u8]) -> Vec<u8> {
     zip.get_ref().clone()
 }
 
+/// The place behind the checksums that stand at `at`: 14 bytes, of which the tenth is 255, and 4.
+fn after_checksums(trace: &[u8], mut at: usize) -> usize {
+    while trace.get(at + 9) == Some(&255) {
+        at += 18;
+    }
+    at
+}
+
 #[test]
 fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
     let stem = recorded("cuts", "1");
@@ -112,6 +120,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
     for record in reader.by_ref() {
         // A referee's packet is preceded by its sender's address.
         let sender = if record.kind == RecordKind::Referee { SenderAddress::LEN } else { 0 };
+        at = after_checksums(&whole, at);
         at += 14 + sender + record.bytes.len();
         boundaries.push((at, Some(record.kind)));
         // A truncated trace is checked up to its last record: the result must equal that of the trace
@@ -119,6 +128,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
         recheck.feed(&record);
         assert!(recheck.results().all(|(_, difference)| difference.is_none()), "after byte {at}");
     }
+    at = after_checksums(&whole, at);
     assert_eq!((at, reader.end()), (whole.len(), Some(&TraceEnd::Whole)));
     assert!(boundaries.len() > 500, "{} records", boundaries.len());
     let mut zip = GzEncoder::new(Vec::new(), Compression::fast());
@@ -333,7 +343,7 @@ fn a_recorder_s_clock_that_is_set_changes_no_rate() {
         let steps = report["clock_steps"].as_array().unwrap();
         assert_eq!(steps.len(), usize::from(by != 0), "{by}: {steps:?}");
         let gaps = report["gaps"].as_array().unwrap();
-        assert_eq!(gaps.is_empty(), by <= 0, "a clock set back is no gap: {gaps:?}");
+        assert!(gaps.is_empty(), "{by}: a clock that is set is no gap, by the cameras' own time: {gaps:?}");
     }
 }
 

@@ -26,6 +26,7 @@ pub(super) struct MergeArgs {
 }
 
 pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
+    work::check_results(&args.out)?;
     let mut kept = Vec::new();
     for directory in &args.folders {
         kept.extend(shards(directory)?);

@@ -39,7 +39,7 @@ pub(super) struct SkillsArgs {
     #[arg(long = "skill", value_name = "LIST", value_delimiter = ',', value_parser = skill)]
     skills: Vec<Skill>,
     /// Number of the first try of each skill, to repeat one.
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1_000_000_000))]
     first: u32,
     /// Threads; the number of cores by default.
     #[arg(short, long, value_parser = clap::value_parser!(u16).range(1..=1024))]

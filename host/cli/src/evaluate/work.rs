@@ -15,7 +15,7 @@ use study::store::{EvaluationError, RunProgress, Shard, StoredExperiment};
 use super::report::{self, ReportArgs};
 use crate::Failure;
 use crate::args::VERSION;
-use crate::destination::{self, FileKind};
+use crate::destination::{self, DestinationError, FileKind};
 use crate::output;
 use crate::progress;
 use crate::setup::SetupArgs;
@@ -50,6 +50,7 @@ impl WorkArgs {
     /// The directory, created if missing; without earlier trials of that shard if `fresh` is set, and without
     /// those of any shard if it is the whole plan.
     pub(super) fn directory(&self, shard: Shard) -> Result<&Path, Failure> {
+        check_results(&self.out)?;
         destination::make_directory(&self.out)?;
         if self.fresh {
             let failed = |error| EvaluationError::File { file: self.out.clone(), error };
@@ -70,6 +71,30 @@ impl WorkArgs {
         if self.fresh && file.exists() { forget(file) } else { Ok(()) }
     }
 }
+
+/// Refuses a directory in which a file of results has another content.
+pub(super) fn check_results(directory: &Path) -> Result<(), DestinationError> {
+    let results = RESULTS.map(|(name, kind)| (directory.join(name), kind));
+    destination::check(&results.each_ref().map(|(file, kind)| (file.as_path(), *kind)), &[])
+}
+
+/// The files of an evaluation's results, as `study` and `report` write them.
+const RESULTS: [(&str, FileKind); 14] = [
+    ("trials.csv", FileKind::Csv),
+    ("tables.json", FileKind::Json),
+    ("tables.csv", FileKind::Csv),
+    ("comparisons.json", FileKind::Json),
+    ("comparisons.csv", FileKind::Csv),
+    ("claims.json", FileKind::Json),
+    ("judge.json", FileKind::Json),
+    ("cases.csv", FileKind::Csv),
+    ("run.json", FileKind::Json),
+    ("ablations.json", FileKind::Json),
+    ("ablations.csv", FileKind::Csv),
+    ("matches.csv", FileKind::Csv),
+    ("matches.json", FileKind::Json),
+    ("report.html", FileKind::Html),
+];
 
 fn forget(file: &Path) -> Result<(), Failure> {
     let gone = std::fs::remove_file(file);

@@ -31,6 +31,8 @@ pub(super) enum FirmwareError {
     Team(String),
     #[error("{0}: {1}")]
     Socket(String, io::Error),
+    #[error("robot {0} is none of 0–15")]
+    NoRobot(u8),
     /// No flashing program: how to install it.
     #[error("{0}")]
     NoFlasher(&'static str),

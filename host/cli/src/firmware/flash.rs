@@ -49,11 +49,11 @@ pub(crate) struct FlashArgs {
 /// Flashes firmware and page, if given.
 pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
     // All of it before the firmware is built.
-    check(args)?;
     let there = Command::new(PROGRAM).arg("--version").stdout(Stdio::null()).status();
     if there.is_err_and(|error| error.kind() == ErrorKind::NotFound) {
         return Err(FirmwareError::NoFlasher(MISSING).into());
     }
+    check(args)?;
     let image = match &args.elf {
         Some(file) => file.clone(),
         None => match &args.robot {

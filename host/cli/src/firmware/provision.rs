@@ -9,6 +9,7 @@ use protocol::provision::{PAGE_LEN, Provision, page, read};
 use protocol::{RobotId, TeamId};
 use rules::League;
 
+use super::failure::FirmwareError;
 use crate::Failure;
 use crate::args::parsers;
 use crate::destination::{self, FileKind};
@@ -18,8 +19,8 @@ use crate::output::{note, print_text};
 #[derive(Debug, Args)]
 pub(crate) struct ProvisionArgs {
     /// Its number, 0–15.
-    #[arg(long, value_name = "N", value_parser = parsers::robot_id)]
-    robot: RobotId,
+    #[arg(long, value_name = "N")]
+    robot: u8,
     /// Its team's number on the radio: 1 yellow, 2 blue.
     #[arg(long, value_name = "N", value_parser = parsers::radio_team)]
     team: TeamId,
@@ -61,16 +62,13 @@ impl LeagueLabel {
 
 pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
     destination::check(&[(&args.out, FileKind::Page)], &[&args.key_file])?;
+    let robot = RobotId::new(args.robot).ok_or(FirmwareError::NoRobot(args.robot))?;
     let key = host::shell::key::read(&args.key_file)?;
     if let Some(warning) = &key.warning {
         note!("onetwo: {warning}");
     }
-    let who = Provision {
-        robot: args.robot,
-        team: args.team,
-        league: args.league.league(),
-        keys: key.key.of_robot(args.robot),
-    };
+    let who =
+        Provision { robot, team: args.team, league: args.league.league(), keys: key.key.of_robot(robot) };
     let bytes: [u8; PAGE_LEN] = page(&who);
     // The page is read back as by the robot: a key of zeros is refused here already.
     read(&bytes, false)?;
@@ -78,7 +76,7 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
     print_text(&format!(
         "{}: robot {} of team {}; it holds this robot's keys, not the team's\n",
         args.out.display(),
-        args.robot,
+        robot,
         args.team.0
     ))
 }

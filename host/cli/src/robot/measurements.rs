@@ -269,8 +269,8 @@ mod tests {
     fn drives_that_cannot_be_true_are_refused_with_their_line() {
         // 24,144 counts a metre by the description; the counter begins again after 2.7 m.
         for (rows, said) in [
-            ("5,55189\n5,55189\n", "line 2: 5 m are 120723 counts"),
-            ("1,24000\n3,6899\n", "line 3: 3 m are 72434 counts"),
+            ("5,55189\n5,55189\n", "line 2: 5 m are 120722 counts"),
+            ("1,24000\n3,6899\n", "line 3: 3 m are 72433 counts"),
             ("2.5,-5000\n2.5,-5000\n", "line 2: 2.5 m are"),
             ("10,44842\n10,44842\n", "line 2: 10 m are"),
             ("1000,24000\n2000,48000\n", "line 2: distance_m is 1000; give metres"),
