@@ -250,9 +250,10 @@ impl Cameras {
             let differs = clock.offset != 0 || clock.late.abs().max(clock.apart.abs()) > DIFFERS_FROM_US;
             let least = if differs { CORRECTION_MIN_US } else { CORRECTION_ALONE_MIN_US };
             if median.abs() >= least {
+                // What the delays differ by is lateness, from now on.
                 clock.offset -= median;
-                clock.late -= median;
-                clock.differs = None;
+                clock.late -= median + clock.apart;
+                (clock.apart, clock.differs) = (0, None);
             }
         }
     }

@@ -108,7 +108,8 @@ fn a_camera_whose_packets_come_late_counts_late_and_is_not_dropped() {
             "{ahead:+} s, camera 1 {delay} s late: worst {worst:.0} mm, {least} robots, {balls:.3}, {cameras:?}"
         );
         assert!(least == 6 && balls >= 0.98, "{ahead} s, {delay} s: {least} robots, ball in {balls}");
-        assert!(worst < 60.0, "{ahead} s, {delay} s: {worst} mm");
+        // Robots of the late camera are carried on for its delay.
+        assert!(worst < 100.0, "{ahead} s, {delay} s: {worst} mm");
     }
 }
 

@@ -22,6 +22,8 @@ const HELD_FORGOTTEN_AFTER_S: f32 = 3.0;
 const OTHER_FORGOTTEN_AFTER_S: f32 = 0.3;
 /// Two blobs of one camera frame nearer than this are one ball, m: its diameter.
 const SAME_BALL_WITHIN_M: f32 = 0.045;
+/// A ball this near to where ours is expected may be ours though another one lies there, m.
+const OTHER_WITHIN_M: f32 = 0.1;
 /// A flying ball appears at most this far from its parabola, m; farther, it is another ball or has hit
 /// something.
 const FLIGHT_GATE_M: f32 = 0.4;
@@ -30,9 +32,10 @@ impl Balls {
     /// The blob nearest to where the ball is expected in the camera frame, if one can be it.
     pub(super) fn nearest_to_chosen(&self, frame: &Frame, around: Around<'_>) -> Option<usize> {
         let track = self.chosen_track()?;
-        let hidden = frame.at - track.seen > micros(UNSEEN_AFTER_S);
+        let expected = track.moved(frame.at, &around.scene.models).0;
         let near = frame.balls.iter().enumerate().filter_map(|(index, seen)| {
-            if hidden && self.is_other(seen.position, frame.at) {
+            let near = seen.position.distance(expected) <= OTHER_WITHIN_M;
+            if !near && self.is_other(seen.position, frame.at) {
                 return None;
             }
             let glimpse = self.glimpse(frame, seen, around.scene);

@@ -29,6 +29,8 @@ const REAPPEARS_M_S: f32 = 10.0;
 const REAPPEARS_WITHIN_M: f32 = 0.3;
 /// Speed of a ball that nobody saw travel, m/s.
 const UNSEEN_SPEED_M_S: f32 = 6.5;
+/// A blob that first shows on the field within this time after ours vanished was put there, s.
+const AT_ONCE_S: f32 = 0.1;
 /// A ball that a robot covers is not elsewhere on the field before this time, s, and not beside it before that.
 const COVERED_MIN_S: f32 = 0.3;
 const COVERED_BESIDE_MIN_S: f32 = 5.0;
@@ -94,9 +96,14 @@ impl Balls {
         if self.returned(&gone, track, now, around) {
             return true;
         }
+        // One blob goes and another comes at once: the ball was put there.
+        let between = track.began - gone.seen;
+        if playable && track.inside && (0..=micros(AT_ONCE_S)).contains(&between) {
+            return true;
+        }
         let covered = match gone.cover {
             None => 0.0,
-            Some(_) if around.scene.is_inside(track.plane.position) => COVERED_MIN_S,
+            Some(_) if track.inside => COVERED_MIN_S,
             Some(_) if playable => COVERED_BESIDE_MIN_S,
             Some(_) => return false,
         };
