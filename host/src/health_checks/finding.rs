@@ -69,16 +69,14 @@ impl Since {
         self.known.retain(|(_, _, seen)| now.since(*seen) < FORGOTTEN_AFTER);
         let date = |fault: Fault| {
             let matter = fault.matter();
-            let since = match self.known.iter_mut().find(|(known, ..)| *known == matter) {
-                Some((_, since, seen)) => {
+            let since =
+                if let Some((_, since, seen)) = self.known.iter_mut().find(|(known, ..)| *known == matter) {
                     *seen = now;
                     *since
-                }
-                None => {
+                } else {
                     self.known.push((matter, now, now));
                     now
-                }
-            };
+                };
             Finding { fault, since }
         };
         faults.into_iter().map(date).collect()

@@ -235,7 +235,7 @@ fn seen_lately(now: Instant, robot: &crate::world::Robot) -> bool {
 
 fn division(host: &Host) -> Option<TeamFault> {
     let league = host.settings().league;
-    let of_league = u32::try_from(league.limits()?.robots).ok()?;
+    let of_league = league.limits()?.robots;
     let allowed = host.game().team(host.settings().us).robots_allowed?;
     (allowed > of_league).then_some(TeamFault::Division { allowed, league, of_league })
 }

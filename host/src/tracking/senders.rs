@@ -232,7 +232,7 @@ impl VisionSenders {
                 let both = (0..CAMERAS_MAX)
                     .find(|camera| sender.sends(*camera, since) && other.sends(*camera, since));
                 let Some(camera) =
-                    both.filter(|_| !refused[rank] && !(sender.is_copy(now) && other.is_copy(now)))
+                    both.filter(|_| !(refused[rank] || sender.is_copy(now) && other.is_copy(now)))
                 else {
                     continue;
                 };

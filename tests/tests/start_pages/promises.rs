@@ -30,14 +30,13 @@ pub(crate) enum Promise {
 
 impl Promise {
     fn parse(line: &'static str) -> Option<Self> {
-        let known: [(&str, fn(&'static str) -> Self); 5] = [
-            ("prints ", Self::Prints),
-            ("writes ", Self::Writes),
-            ("has the trace of ", Self::TraceOf),
-            ("runs until ", Self::RunsUntil),
-            ("shows a page", |_| Self::Page),
-        ];
-        known.into_iter().find_map(|(start, of)| line.strip_prefix(start).map(of))
+        let of = |start: &str| line.strip_prefix(start);
+        of("prints ")
+            .map(Self::Prints)
+            .or_else(|| of("writes ").map(Self::Writes))
+            .or_else(|| of("has the trace of ").map(Self::TraceOf))
+            .or_else(|| of("runs until ").map(Self::RunsUntil))
+            .or_else(|| of("shows a page").map(|_| Self::Page))
     }
 
     /// Whether the command ends by itself.

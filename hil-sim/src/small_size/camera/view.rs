@@ -125,7 +125,7 @@ impl View {
                 continue;
             }
             let detection = self.robot(robot, settings);
-            robot.who.colour.pick(&mut frame.robots_yellow, &mut frame.robots_blue).push(detection)
+            robot.who.colour.pick(&mut frame.robots_yellow, &mut frame.robots_blue).push(detection);
         }
         frame
     }

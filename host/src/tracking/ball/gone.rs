@@ -93,7 +93,7 @@ impl Balls {
         if track.other {
             return gone.cover.is_none() && playable && unseen >= TAKEN_AWAY_AFTER_S;
         }
-        if self.returned(&gone, track, now, around) {
+        if Self::returned(&gone, track, now, around) {
             return true;
         }
         // One blob goes and another comes at once: the ball was put there.
@@ -111,7 +111,7 @@ impl Balls {
     }
 
     /// Whether a blob first showed where the ball comes out: at the robot that covers it, or where it vanished.
-    fn returned(&self, gone: &Gone, track: &Track, now: Captured, around: Around<'_>) -> bool {
+    fn returned(gone: &Gone, track: &Track, now: Captured, around: Around<'_>) -> bool {
         let off = gone.place.distance(track.origin);
         let Some(cover) = gone.cover else {
             let unseen = seconds(track.began - gone.seen).max(0.0);
@@ -128,7 +128,7 @@ impl Balls {
     /// Whether this blob is the ball that another one has replaced meanwhile.
     pub(super) fn is_back(&self, track: &Track, now: Captured, around: Around<'_>) -> bool {
         let replaced = self.gone.filter(|gone| gone.replaced && track.began >= gone.seen && !track.other);
-        replaced.is_some_and(|gone| self.returned(&gone, track, now, around))
+        replaced.is_some_and(|gone| Self::returned(&gone, track, now, around))
     }
 
     /// Whether a blob that is not the ball for certain is the ball now.
@@ -140,7 +140,7 @@ impl Balls {
     pub(super) fn note_replacement(&mut self, track: &Track, now: Captured, around: Around<'_>) {
         self.gone = self
             .gone
-            .filter(|gone| !gone.replaced && (track.other || !self.returned(gone, track, now, around)));
+            .filter(|gone| !gone.replaced && (track.other || !Self::returned(gone, track, now, around)));
         if let Some(gone) = &mut self.gone {
             gone.replaced = true;
         }

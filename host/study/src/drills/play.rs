@@ -148,7 +148,7 @@ fn watch(
                 Some(ours) if who != ours => row.next_touch = NextTouch::Mate,
                 // Pinball off a body is no pass: it counts as played once it is kicked.
                 None if who.colour == US && matches!(event, PhysicsEvent::Kicked { .. }) => {
-                    player = Some(who)
+                    player = Some(who);
                 }
                 _ => {}
             }
