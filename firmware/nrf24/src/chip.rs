@@ -125,8 +125,8 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
         Ok(())
     }
 
-    /// Returns whether the chip still has every setting: after a dip of its supply it has none, after an upset
-    /// it lacks one. All registers are read for it ([`Settings`]).
+    /// Returns whether the chip still has every setting: after a dip of its supply it has none, after an
+    /// upset it lacks one. All registers are read for it ([`Settings`]).
     pub(crate) fn is_set(&mut self) -> Result<bool, Fault> {
         Ok(self.radio.get_payload_length()? == PAYLOAD_MAX as u8)
     }

@@ -1,5 +1,5 @@
-//! `upset`: tests: a register of a chip is upset in mid-match, at the robot or at the base station, and frames
-//! arrive again.
+//! `upset`: tests: a register of a chip is upset in mid-match, at the robot or at the base station, and
+//! frames arrive again.
 
 use embedded_hal::spi::{Operation, SpiDevice};
 use nrf24::{Base, Channel, Rate, Robot};

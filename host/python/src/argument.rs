@@ -1,5 +1,5 @@
-//! `argument`: values of Python's callers, of whatever type: `NumPy`'s numbers count as Python's own, and what
-//! does not fit raises `ValueError` with the argument's name.
+//! `argument`: values of Python's callers, of whatever type: `NumPy`'s numbers count as Python's own, and
+//! what does not fit raises `ValueError` with the argument's name.
 
 use std::borrow::Cow;
 

@@ -5,8 +5,9 @@
 //! "ONETWO_TRACE" | version u32 | length u32, header: JSON in UTF-8 | records
 //! record: time u64, µs | host u8 | kind u8 | length u32 | bytes            all integers little endian
 //! ```
-//! Kind 255 is no record: its 4 bytes are the CRC-32 of all before it, magic and header included. One is written at
-//! each flush and at the end; a trace that does not end with one is cut. Versions 1 and 2 have none.
+//! Kind 255 is no record: its 4 bytes are the CRC-32 of all before it, magic and header included. One is
+//! written at each flush and at the end; a trace that does not end with one is cut. Versions 1 and 2 have
+//! none.
 //!
 //! Bytes of a referee's record: the sender's address ([`SenderAddress::to_bytes`], 18 bytes), then the
 //! datagram. Version 1 had no address there; its packets are read as [`SenderAddress::INTERNAL`]'s. A record

@@ -12,8 +12,8 @@ pub(super) struct PulseFit {
 }
 
 impl PulseFit {
-    /// The speed that the robot gets from a pulse, µs, of the table, m/s: straight lines from 0 at 0; the last
-    /// beyond.
+    /// The speed that the robot gets from a pulse, µs, of the table, m/s: straight lines from 0 at 0; the
+    /// last beyond.
     pub(super) fn speed_of(&self, pulse: f64) -> f64 {
         let mut last = (0.0, 0.0);
         for (speed, micros) in self.table.iter().map(|(speed, micros)| (f64::from(*speed), *micros as f64)) {

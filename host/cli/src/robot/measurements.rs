@@ -1,5 +1,5 @@
-//! `measurements`: what was measured on a bench, as CSV files: read, and refused where it cannot be true. Each
-//! refusal names file, line and remedy.
+//! `measurements`: what was measured on a bench, as CSV files: read, and refused where it cannot be true.
+//! Each refusal names file, line and remedy.
 
 use std::path::Path;
 

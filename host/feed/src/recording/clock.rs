@@ -215,8 +215,8 @@ mod tests {
         }
     }
 
-    /// 60 frames a second for 4 s by a camera of a right clock; before the `at`-th the recorder's clock is set
-    /// by `by` s, and the recording pauses for `pause` s.
+    /// 60 frames a second for 4 s by a camera of a right clock; before the `at`-th the recorder's clock is
+    /// set by `by` s, and the recording pauses for `pause` s.
     fn span_with(at: u32, by: f64, pause: f64, camera_too: bool) -> (f64, Vec<ClockStep>) {
         let mut clock = LogClock::default();
         for n in 0..240 {

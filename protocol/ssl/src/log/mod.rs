@@ -2,8 +2,8 @@
 //!
 //! A file is `SSL_LOG_FILE`, an int32 version (1), and then messages: int64 receiver's time in ns, int32
 //! type, int32 size, payload; all integers big-endian. An index of the messages may stand at the end of an
-//! uncompressed file; a `.log.gz` is the whole file gzipped and has none. Files that were joined (`cat`), gzipped
-//! or not, are read one after the other.
+//! uncompressed file; a `.log.gz` is the whole file gzipped and has none. Files that were joined (`cat`),
+//! gzipped or not, are read one after the other.
 //!
 //! Read with [`open`] or [`open_at`], write with [`LogWriter`], count with [`Summary`]. A file may end
 //! anywhere and hold anything: every whole message is returned, and [`LogReader::end`] reports what was found

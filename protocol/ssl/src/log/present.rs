@@ -13,8 +13,8 @@ use crate::vision::{
 
 impl Record {
     /// Kind and bytes as today's programs send the message: the kind of an unknown one is found by its bytes,
-    /// and vision of until 2014 has its flat geometry drawn as lines and arcs. `None` for what cannot be read,
-    /// and for blanks and the index.
+    /// and vision of until 2014 has its flat geometry drawn as lines and arcs. `None` for what cannot be
+    /// read, and for blanks and the index.
     pub fn present(&self) -> Option<(MessageKind, Cow<'_, [u8]>)> {
         let kind = match self.kind {
             MessageKind::Unknown => guess(&self.payload)?,
