@@ -26,8 +26,9 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     }
     let (first, start) = texts.split_at(PAGES.len() - START_PAGES);
     let started: Vec<_> = start.iter().flat_map(|text| commands(text)).collect();
-    let others = first.iter().flat_map(|text| commands(text)).filter(|command| !started.contains(command));
-    others.map(|command| run(&mut context.cargo(command))).collect::<Result<(), _>>()?;
+    let mut others =
+        first.iter().flat_map(|text| commands(text)).filter(|command| !started.contains(command));
+    others.try_for_each(|command| run(&mut context.cargo(command)))?;
     let line = "test --workspace --features onetwo/png --test start_pages";
     run(&mut context.cargo(line))
 }

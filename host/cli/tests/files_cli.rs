@@ -149,6 +149,7 @@ fn joined_logs_are_read_to_the_last_and_a_cut_one_among_them_is_told() {
 fn a_recorder_s_clock_that_jumps_is_not_time_that_was_played() {
     let directory = scratch("clock");
     let file = directory.join("clock.log");
+    #[expect(clippy::type_complexity, reason = "one table of a test")]
     let stamps: [(&str, fn(u32, f64) -> i64); 5] = [
         ("from 1970", |n, t| if n < 3 { 0 } else { right(n, t) }),
         ("an hour on", |n, t| right(n, t) + if n < 40 { 0 } else { 3_600_000_000_000 }),
@@ -259,7 +260,7 @@ fn no_output_replaces_an_input_a_key_or_a_file_of_another_kind() {
         "{\"ball\":[-600,10],\"defending\":\"yellow\",\"teammates\":{\"1\":[-700,0]},\"opponents\":[]}\n",
     );
     fs::hard_link(at("problems.jsonl"), at("hard.csv")).expect("a link");
-    let names = ["team.key", "team.toml", "thesis.tex", "drives.csv", "problems.jsonl"].map(|name| at(name));
+    let names = ["team.key", "team.toml", "thesis.tex", "drives.csv", "problems.jsonl"].map(&at);
     let before = names.each_ref().map(|name| fs::read(name).expect("a file"));
     let [key, settings, thesis, drives, problems] = names.each_ref().map(|name| text(name));
     let (hard, figure) = (at("hard.csv"), at("figure.svg"));

@@ -329,7 +329,9 @@ mod tests {
 
         fn look(&mut self, number: u32, ordered: &[u8]) {
             let mut set = OurRobots::default();
-            ordered.iter().for_each(|id| set[usize::from(*id)] = true);
+            for id in ordered {
+                set[usize::from(*id)] = true;
+            }
             let now = Instant(u64::from(number) * 16_667);
             self.senders.look(now, ExpectedRobots { heard: set, ordered: set });
         }

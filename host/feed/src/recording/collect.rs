@@ -83,7 +83,13 @@ pub fn collect(
             from_trace(file, known, key_file, cases, observer)?
         } else if begin.starts_with(LOG) {
             from_log(file, known, observer)?
-        } else if begin.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&begin).first().is_none_or(begins_json) {
+        } else if begin
+            .strip_prefix(BYTE_ORDER_MARK)
+            .unwrap_or(&begin)
+            .first()
+            .copied()
+            .is_none_or(begins_json)
+        {
             from_text(file)?
         } else {
             return Err(in_file(file)(RecordedError::NoRecording).into());
@@ -256,8 +262,8 @@ fn other_league(file: &Path, recorded: &str, known: &OpenLibrary) -> RecordingFa
 }
 
 /// Whether a text that begins with this byte may be lines of JSON.
-fn begins_json(first: &u8) -> bool {
-    *first == b'{' || first.is_ascii_whitespace()
+fn begins_json(first: u8) -> bool {
+    first == b'{' || first.is_ascii_whitespace()
 }
 
 /// What some editors put before a text.
