@@ -71,8 +71,9 @@ impl Places {
         let mut state = self.locked();
         state.waiting.push_back((stream, address));
         if state.waiting.len() > WAITING_MAX {
-            let count = |address: &IpAddr| state.waiting.iter().filter(|(_, other)| other == address).count();
-            let most = state.waiting.iter().map(|(_, address)| *address).max_by_key(count);
+            let addresses = state.waiting.iter().map(|(_, address)| *address);
+            let most = addresses
+                .max_by_key(|address| state.waiting.iter().filter(|(_, other)| other == address).count());
             let newest = state.waiting.iter().rposition(|(_, address)| Some(*address) == most);
             newest.and_then(|index| state.waiting.remove(index));
         }

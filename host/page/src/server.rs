@@ -88,8 +88,9 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
 
 /// Serves the connections that have a place, each on a thread of its own.
 fn serve_all(places: &Arc<Places>, shared: &Arc<Shared>) {
-    let is_token = |request: &[u8]| shared.shows_token(request);
-    while let Some((stream, place)) = places.next(shared.settings.limits.connections, is_token) {
+    while let Some((stream, place)) =
+        places.next(shared.settings.limits.connections, |request| shared.shows_token(request))
+    {
         // Scenes are small and needed at once.
         let _ = stream.set_nodelay(true);
         let shared = shared.clone();

@@ -67,18 +67,15 @@ impl Since {
     /// The faults of now as findings.
     pub fn date(&mut self, now: Instant, faults: Vec<Fault>) -> Vec<Finding> {
         self.known.retain(|(_, _, seen)| now.since(*seen) < FORGOTTEN_AFTER);
-        let date = |fault: Fault| {
-            let matter = fault.matter();
-            let since =
-                if let Some((_, since, seen)) = self.known.iter_mut().find(|(known, ..)| *known == matter) {
-                    *seen = now;
-                    *since
-                } else {
-                    self.known.push((matter, now, now));
-                    now
-                };
-            Finding { fault, since }
-        };
-        faults.into_iter().map(date).collect()
+        faults.into_iter().map(|fault| Finding { since: self.since(now, fault.matter()), fault }).collect()
+    }
+
+    fn since(&mut self, now: Instant, matter: String) -> Instant {
+        if let Some((_, since, seen)) = self.known.iter_mut().find(|(known, ..)| *known == matter) {
+            *seen = now;
+            return *since;
+        }
+        self.known.push((matter, now, now));
+        now
     }
 }

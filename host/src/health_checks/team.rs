@@ -185,10 +185,10 @@ impl TeamChecks {
     fn no_keeper(&mut self, now: Instant, host: &Host, sees: bool) -> Option<TeamFault> {
         let (us, game) = (host.settings().us, host.game());
         let keeper = game.team(us).keeper;
-        let is_seen = |id| host.world().ours(us).any(|robot| robot.who.id == id && seen_lately(now, robot));
         let plays = !matches!(game.phase, Phase::Halt | Phase::Timeout(_));
-        let others = host.world().ours(us).filter(|robot| seen_lately(now, robot)).count();
-        let missing = keeper.filter(|id| sees && plays && others > 0 && !is_seen(*id));
+        let seen: Vec<_> =
+            host.world().ours(us).filter(|robot| seen_lately(now, robot)).map(|robot| robot.who.id).collect();
+        let missing = keeper.filter(|id| sees && plays && !seen.is_empty() && !seen.contains(id));
         self.keeper
             .see(now, missing.is_some())
             .then_some(missing)
@@ -199,8 +199,9 @@ impl TeamChecks {
     fn placement(&mut self, now: Instant, host: &Host) -> Option<TeamFault> {
         let (game, field) = (host.game(), host.field());
         let place = game.placement;
-        let beyond = |place: Point<Field>| field.clamp(place, -field.margin.max(field.goal_depth)) != place;
-        let wrong = matches!(game.phase, Phase::BallPlacement(_)) && place.is_none_or(beyond);
+        let beyond_m = field.margin.max(field.goal_depth);
+        let possible = place.is_some_and(|place| field.clamp(place, -beyond_m) == place);
+        let wrong = matches!(game.phase, Phase::BallPlacement(_)) && !possible;
         self.placement.see(now, wrong).then_some(TeamFault::Placement { place })
     }
 
@@ -213,20 +214,22 @@ impl TeamChecks {
         let visible = host.world().ours(us).filter(|robot| seen_lately(now, robot));
         visible.for_each(|robot| seen[robot.who.id.index()] = true);
         let led = heard.contains(&true);
-        let lasts = |since: &mut Option<Instant>, holds: bool| {
-            *since = holds.then(|| since.unwrap_or(now));
-            since.is_some_and(|since| now.since(since) >= APART_AFTER)
-        };
         for robot in RobotId::all() {
             let (heard, seen) = (heard[robot.index()], seen[robot.index()]);
-            if lasts(&mut self.unseen[robot.index()], sees && heard && !seen) {
+            if lasts(now, &mut self.unseen[robot.index()], sees && heard && !seen) {
                 faults.push(TeamFault::Unseen(robot));
             }
-            if lasts(&mut self.unheard[robot.index()], led && seen && !heard) {
+            if lasts(now, &mut self.unheard[robot.index()], led && seen && !heard) {
                 faults.push(TeamFault::Unheard(robot));
             }
         }
     }
+}
+
+/// Whether it holds, and has for [`APART_AFTER`].
+fn lasts(now: Instant, since: &mut Option<Instant>, holds: bool) -> bool {
+    *since = holds.then(|| since.unwrap_or(now));
+    since.is_some_and(|since| now.since(since) >= APART_AFTER)
 }
 
 fn seen_lately(now: Instant, robot: &crate::world::Robot) -> bool {

@@ -329,8 +329,9 @@ impl Source {
 
     /// Whether it is the same referee by another network: with its identifier and its packets.
     pub(super) fn is_same_referee(&self, other: &Self) -> bool {
-        let sent = |(stamped, _): &(Stamped, Instant)| other.recent.iter().any(|(known, _)| known == stamped);
-        self.key.identifier == other.key.identifier && self.recent.iter().any(sent)
+        let mut own = self.recent.iter().map(|(stamped, _)| stamped);
+        self.key.identifier == other.key.identifier
+            && own.any(|stamped| other.recent.iter().any(|(known, _)| known == stamped))
     }
 
     fn remember(&mut self, came: Stamped, now: Instant) {

@@ -8,7 +8,6 @@ use rules::Phase;
 use rules::state::RefereeCommand;
 
 use super::identity::{SourceKey, SourcePin};
-use super::source::Source;
 use super::verdict::Doubt;
 use super::{HALT_AFTER, Listener, OnSilence, SILENCE};
 
@@ -84,8 +83,8 @@ impl Listener {
         if since >= HALT_AFTER {
             warnings.push(Warning::Silent { source: followed.key.clone(), since, robots: self.on_silence });
         }
-        let heard = |other: &&Source| lately(other.received) && !other.is_same_referee(followed);
-        for other in others.iter().filter(heard) {
+        let heard = others.iter().filter(|other| lately(other.received) && !other.is_same_referee(followed));
+        for other in heard {
             warnings.push(if other.command == followed.command {
                 Warning::Several { followed: followed.key.clone(), other: other.key.clone() }
             } else {

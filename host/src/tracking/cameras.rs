@@ -59,11 +59,13 @@ impl LeastBySlot {
     /// What this difference is greater by than the other's, in the newest slot before the present one that both
     /// have, else in the present one.
     fn beyond(&self, other: &Self) -> Option<i64> {
-        let of = |all: &Self, slot| {
-            all.0.iter().flatten().find(|(known, _)| *known == slot).map(|(_, least)| *least)
-        };
         let (present, _) = self.0[0]?;
-        [present - 1, present].into_iter().find_map(|slot| Some(of(self, slot)? - of(other, slot)?))
+        [present - 1, present].into_iter().find_map(|slot| Some(self.of(slot)? - other.of(slot)?))
+    }
+
+    /// The least difference of a slot.
+    fn of(&self, slot: i64) -> Option<i64> {
+        self.0.iter().flatten().find(|(known, _)| *known == slot).map(|(_, least)| *least)
     }
 }
 

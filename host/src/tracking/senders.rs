@@ -186,15 +186,13 @@ impl VisionSenders {
     }
 
     fn note(&mut self, now: Instant, own: usize, camera: usize, datagram: u64) {
-        let copies = |(index, sender): (usize, &mut Sender)| {
+        let mut copied = false;
+        for (index, sender) in self.senders.iter_mut().enumerate() {
             let sent = sender.cameras[camera].as_ref();
-            let same = index != own && sent.is_some_and(|sent| sent.datagrams.iter().any(|d| *d == datagram));
-            if same {
-                sender.copied = Some(now);
+            if index != own && sent.is_some_and(|sent| sent.datagrams.iter().any(|d| *d == datagram)) {
+                (sender.copied, copied) = (Some(now), true);
             }
-            same
-        };
-        let copied = self.senders.iter_mut().enumerate().map(copies).fold(false, |any, one| any | one);
+        }
         let sender = &mut self.senders[own];
         sender.newest = now;
         if copied {
@@ -259,8 +257,9 @@ impl VisionSenders {
         if now.since(self.compared) < COMPARED_OVER {
             return;
         }
-        let rank = |address| self.senders.iter().position(|sender| sender.address == address);
-        if let (Some(first), Some(other)) = (rank(second.followed), rank(second.other)) {
+        let ranks = [second.followed, second.other]
+            .map(|address| self.senders.iter().position(|sender| sender.address == address));
+        if let [Some(first), Some(other)] = ranks {
             let [followed, challenger] = [first, other].map(|rank| &self.senders[rank]);
             let [still, moved] =
                 [followed, challenger].map(|sender| sender.count(&ordered, |way| way >= MOVES_FROM_M));

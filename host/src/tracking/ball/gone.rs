@@ -177,12 +177,9 @@ impl Balls {
     pub(super) fn is_other(&self, position: Point<Field>, now: Captured) -> bool {
         let tracked = self.tracks.iter().enumerate().filter(|(index, _)| self.chosen != Some(*index));
         let mut tracked = tracked.filter_map(|(_, track)| track.as_ref()).filter(|track| track.other);
-        let near = |place: Point<Field>| place.distance(position) <= SAME_PLACE_M;
-        tracked.any(|track| near(track.plane.position))
-            || self
-                .others
-                .iter()
-                .flatten()
-                .any(|(place, at)| now - at <= micros(PLACE_KEPT_S) && near(*place))
+        tracked.any(|track| track.plane.position.distance(position) <= SAME_PLACE_M)
+            || self.others.iter().flatten().any(|(place, at)| {
+                now - at <= micros(PLACE_KEPT_S) && place.distance(position) <= SAME_PLACE_M
+            })
     }
 }

@@ -104,13 +104,12 @@ impl DrillRow {
 
     /// Whether ours did what the drill asks.
     pub fn succeeded(&self) -> bool {
-        let within = |time: Option<f64>, most: f64| time.is_some_and(|time| time <= most);
         self.played
             && match self.drill {
                 DrillKind::Carrier | DrillKind::Cross => !self.goal_against,
                 DrillKind::Marker => self.next_touch == NextTouch::Mate && !self.goal_against,
-                DrillKind::Rebound => within(self.touched_s, REBOUND_WITHIN_S),
-                DrillKind::Shielder => within(self.touched_s, SHIELDED_WITHIN_S),
+                DrillKind::Rebound => self.touched_s.is_some_and(|time| time <= REBOUND_WITHIN_S),
+                DrillKind::Shielder => self.touched_s.is_some_and(|time| time <= SHIELDED_WITHIN_S),
                 DrillKind::GoalLine => self.cleared_s.is_some() && !self.goal_against,
             }
     }
@@ -146,13 +145,8 @@ impl Experiment for DrillPlan {
     type Error = GameError;
 
     fn jobs(&self) -> Result<Vec<DrillJob>, GameError> {
-        let of = |drill: &DrillKind| {
-            (0..self.tries).map({
-                let drill = *drill;
-                move |number| DrillJob { drill, number }
-            })
-        };
-        Ok(self.drills.iter().flat_map(of).collect())
+        let drills = self.drills.iter().copied();
+        Ok(drills.flat_map(|drill| (0..self.tries).map(move |number| DrillJob { drill, number })).collect())
     }
 
     fn play(&self, job: &DrillJob) -> Result<DrillRow, GameError> {

@@ -6,8 +6,8 @@ use hil_sim::small_size::referee::Restart;
 use hil_sim::small_size::worlds::WorldChoice;
 use hil_sim::small_size::{Ball, PhysicsEvent};
 use host::strategy::Team;
+use rules::Phase;
 use rules::state::RefereeCommand;
-use rules::{Colour, Phase};
 use serde::Serialize;
 
 use super::script::{Script, THEM, US, id, them};
@@ -125,8 +125,7 @@ fn watch(
 ) -> Result<(), GameError> {
     let began = game.time();
     let ball_was = game.world().ball.position;
-    let score = |game: &Game<'_>, team: Colour| game.referee().accounts().of(team).score;
-    let before = [US, THEM].map(|team| score(game, team));
+    let before = [US, THEM].map(|team| game.referee().accounts().of(team).score);
     // The kicker of our free kick has played it before the ball was in play.
     let mut player =
         (drill == DrillKind::Marker).then(|| game.world().last_touch().map(|(who, _)| who)).flatten();
@@ -157,7 +156,7 @@ fn watch(
             row.cleared_s.get_or_insert(time);
         }
     }
-    let after = [US, THEM].map(|team| score(game, team));
+    let after = [US, THEM].map(|team| game.referee().accounts().of(team).score);
     (row.goal, row.goal_against) = (after[0] > before[0], after[1] > before[1]);
     if row.next_touch == NextTouch::None && player.is_some() && game.referee().phase() != Phase::Run {
         row.next_touch = NextTouch::Over;

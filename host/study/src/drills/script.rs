@@ -5,7 +5,7 @@ use geometry::{Angle, Field, Point, Pose, Twist, Vector};
 use hil_sim::small_size::{Drive, KickCommand, Order, Robot, World};
 use motion::ball::BallModel;
 use protocol::{RobotId, Who};
-use rules::limits::BALL_RADIUS;
+use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::{Colour, Phase};
 
 use super::DrillKind;
@@ -258,11 +258,9 @@ fn step_into_line(world: &World, robot: &Robot) -> Wanted {
     let field = &world.pitch().field;
     let ball = world.ball.position;
     let ours = world.robots().iter().filter(|robot| robot.present && robot.who.colour == US);
-    let kicker = ours.min_by(|a, b| {
-        let distance = |robot: &Robot| robot.pose.position.distance(ball);
-        distance(a).total_cmp(&distance(b))
-    });
-    let lined_up = kicker.filter(|kicker| kicker.pose.position.distance(ball) < 0.4);
+    let near = ours.map(|robot| (robot, robot.pose.position.distance(ball)));
+    let kicker = near.min_by(|a, b| a.1.total_cmp(&b.1));
+    let lined_up = kicker.filter(|(_, distance)| *distance < LINED_UP_WITHIN_M).map(|(kicker, _)| kicker);
     let towards = lined_up.map_or(ball.direction_to(robot.pose.position), |kicker| {
         // As its heading goes, once it is near the ball.
         kicker.pose.heading
@@ -320,14 +318,9 @@ fn gap(world: &World, from: Point<Field>) -> Gap {
     let line = field.goal_line(OUR_END);
     let half = 0.5 * field.goal_width - BALL_RADIUS;
     let step = 2.0 * half / (AIMS - 1) as f32;
-    let open = |aim: Point<Field>| {
-        let way = geometry::Segment::new(from, aim);
-        let ours = world.robots().iter().filter(|robot| robot.present && robot.who.colour == US);
-        ours.map(|robot| way.distance_to(robot.pose.position)).all(|off| off > 0.09 + BALL_RADIUS)
-    };
     let (mut best, mut run) = ((0_usize, 0_usize), 0_usize);
     for number in 0..AIMS {
-        run = if open(Point::new(line, -half + number as f32 * step)) { run + 1 } else { 0 };
+        run = if is_open(world, from, Point::new(line, -half + number as f32 * step)) { run + 1 } else { 0 };
         if run > best.1 {
             best = (number, run);
         }
@@ -335,10 +328,17 @@ fn gap(world: &World, from: Point<Field>) -> Gap {
     if best.1 == 0 {
         return Gap { aim: Point::new(line, 0.0), angle: 0.0 };
     }
-    let y = |number: f32| -half + number * step;
     let (first, last) = ((best.0 + 1 - best.1) as f32, best.0 as f32);
-    let angle = from.direction_to(Point::new(line, y(first))) - from.direction_to(Point::new(line, y(last)));
-    Gap { aim: Point::new(line, y(0.5 * (first + last))), angle: angle.abs() }
+    let [low, aim, high] =
+        [first, 0.5 * (first + last), last].map(|number| Point::new(line, -half + number * step));
+    Gap { aim, angle: (from.direction_to(low) - from.direction_to(high)).abs() }
+}
+
+/// Whether none of ours stands in a ball's way.
+fn is_open(world: &World, from: Point<Field>, aim: Point<Field>) -> bool {
+    let way = geometry::Segment::new(from, aim);
+    let ours = world.robots().iter().filter(|robot| robot.present && robot.who.colour == US);
+    ours.map(|robot| way.distance_to(robot.pose.position)).all(|off| off > ROBOT_RADIUS + BALL_RADIUS)
 }
 
 fn off_ball(world: &World, at: Point<Field>, distance: f32) -> Point<Field> {
@@ -407,6 +407,8 @@ const ARRIVAL_M_S: f32 = 2.2;
 const COMING_M_S: f32 = 0.5;
 /// Distance of their kicker behind the ball while it waits, m.
 const WAITS_BACK_M: f32 = 0.2;
+/// A robot of ours this near the ball lines up for the kick, m.
+const LINED_UP_WITHIN_M: f32 = 0.4;
 /// Distance of the marker from our free kick, m.
 const MARKER_AT_M: f32 = 0.7;
 /// Distance from the ball at restarts, m.

@@ -100,8 +100,8 @@ struct PositionRow {
 pub fn built_in() -> Result<Vec<Situation>, SituationError> {
     let index = include_str!("../../data/situations/index.csv");
     let positions = include_str!("../../data/situations/situations.csv");
-    let name = |name: &str| Path::new("built-in").join(name);
-    parse(&name("index.csv"), index.as_bytes(), &name("situations.csv"), positions.as_bytes())
+    let [index_file, file] = ["index.csv", "situations.csv"].map(|name| Path::new("built-in").join(name));
+    parse(&index_file, index.as_bytes(), &file, positions.as_bytes())
 }
 
 /// The situations of a file, plain or gzip, with its `index.csv` beside it.

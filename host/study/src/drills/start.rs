@@ -237,8 +237,6 @@ impl DrillStart {
 
     /// Robots outside areas that are closed to them, on the field, off the ball and off each other.
     fn make_legal(&mut self, field: &FieldSpec) {
-        let keeps =
-            |number: usize, lead: usize, shooter: Option<usize>| number == lead || Some(number) == shooter;
         let (lead, shooter) = (self.lead, self.shooter.map(|(shooter, _)| shooter));
         let ball = self.ball.position;
         let off_ball = if self.opening == Opening::OpenPlay { BODIES_APART_M } else { RESTART_OFF_M };
@@ -250,7 +248,7 @@ impl DrillStart {
                 if number != lead {
                     pose.position = off_area(field, pushed_off(pose.position, ball, off_ball), AREA_OFF_M);
                 }
-                if !keeps(number, lead, shooter) {
+                if number != lead && Some(number) != shooter {
                     pose.position = field.clamp(pose.position, 0.1);
                 }
             }
@@ -259,9 +257,6 @@ impl DrillStart {
     }
 
     fn push_apart(&mut self, lead: usize, shooter: Option<usize>) {
-        let fixed = |team: usize, number: usize| {
-            if team == 0 { number == 0 } else { number == lead || Some(number) == shooter }
-        };
         let all: Vec<(usize, usize, Point<Field>)> = [&self.ours, &self.theirs]
             .into_iter()
             .enumerate()
@@ -270,7 +265,8 @@ impl DrillStart {
             })
             .collect();
         for (team, number, at) in &all {
-            if fixed(*team, *number) {
+            let fixed = if *team == 0 { *number == 0 } else { *number == lead || Some(*number) == shooter };
+            if fixed {
                 continue;
             }
             let mut moved = *at;

@@ -139,8 +139,8 @@ fn simulator(text: &str, team: Option<Colour>) -> Result<SocketAddr, Failure> {
         Some(Colour::Yellow) => addresses::ROBOTS_YELLOW_PORT,
         Some(Colour::Blue) | None => addresses::ROBOTS_BLUE_PORT,
     };
-    let unknown = |error| FirmwareError::Team(format!("unknown host in --simulator {text}: {error}")).into();
-    ssl::net::resolve_destination(text, Some(port)).map_err(unknown)
+    ssl::net::resolve_destination(text, Some(port))
+        .map_err(|error| FirmwareError::Team(format!("unknown host in --simulator {text}: {error}")).into())
 }
 
 /// An empty journal for a robot: the memory of its board, as a file.
