@@ -44,8 +44,8 @@ geometry::labels! {
             /// The robot whose adapted position lies outside.
             robot: CaseRobot,
         } = "out_of_field",
-        /// A robot of the cheapest correspondence exceeds the travel limit; the one with the longest distance is
-        /// reported.
+        /// A robot of the cheapest correspondence exceeds the travel limit; the one with the longest distance
+        /// is reported.
         TooFar {
             /// The case robot at whose adapted position the player would start.
             robot: CaseRobot,

@@ -157,8 +157,8 @@ pub struct TeamConfig {
     pub league: League,
     /// The keeper, until the referee names another.
     pub keeper: RobotId,
-    /// The interface on which multicast is received, by name or address; `None`: every interface that supports
-    /// it.
+    /// The interface on which multicast is received, by name or address; `None`: every interface that
+    /// supports it.
     pub interface: Option<String>,
     /// Link to the robots.
     pub robots: RobotLink,

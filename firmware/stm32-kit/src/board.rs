@@ -21,8 +21,8 @@ macro_rules! emergency_stop {
     };
 }
 
-/// Declares `crash_record` and the handlers of panics and hard faults: the emergency stop, then the place kept
-/// in the chip's backup registers and reported, then a restart.
+/// Declares `crash_record` and the handlers of panics and hard faults: the emergency stop, then the place
+/// kept in the chip's backup registers and reported, then a restart.
 #[macro_export]
 #[allow(clippy::crate_in_macro_def, reason = "the stop is the board's own: its module `off`")]
 macro_rules! fault_handlers {
@@ -63,8 +63,8 @@ macro_rules! fault_handlers {
     };
 }
 
-/// Declares `page`, the provisioned key page, and `Ledger`, the counter of starts in two sectors: both at these
-/// offsets in the chip's flash. `read` copies a cell's bytes from an address.
+/// Declares `page`, the provisioned key page, and `Ledger`, the counter of starts in two sectors: both at
+/// these offsets in the chip's flash. `read` copies a cell's bytes from an address.
 #[macro_export]
 macro_rules! flash {
     (counter: $counter:literal, page: $page:literal, read: $read:path) => {

@@ -389,13 +389,13 @@ fn finding_3_halt_does_not_wait_behind_a_flood_of_camera_frames() {
 }
 
 #[test]
-fn finding_3_datagrams_longer_than_vision_sends_are_refused() {
+fn finding_3_halt_does_not_wait_behind_long_frames_of_a_second_vision() {
     let frames = vec![camera_frame(1_000_000, 2_000)];
     assert!(frames[0].len() > 50_000, "{} bytes", frames[0].len());
     let (robots, received) = station();
     let mut field = Field::start(&format!("udp://{robots}"), &[]);
     halts_under(&mut field, &received, frames);
-    field.wait_for_line(&["longer than vision sends"]);
+    field.wait_for_line(&["a second vision sends camera 0"]);
 }
 
 #[test]

@@ -18,8 +18,8 @@ pub struct Limits {
     /// A connection that is not a viewer's socket is closed after this time in any state: it may be
     /// a reader that never reads.
     pub connection: Duration,
-    /// Connections served at once, viewers' sockets aside, shared out by address. Others wait; a few more places are
-    /// kept for addresses that hold none and for the token.
+    /// Connections served at once, viewers' sockets aside, shared out by address. Others wait; a few more
+    /// places are kept for addresses that hold none and for the token.
     pub connections: usize,
     /// Viewers at once: further ones are refused.
     pub viewers: usize,

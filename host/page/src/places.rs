@@ -1,6 +1,6 @@
-//! `places`: shares the places for connections out by address. A place that becomes free goes to the address that
-//! holds the fewest; a few more are kept for addresses that hold none and for whoever shows the token, so that
-//! one machine that opens connections without end keeps nobody from HALT.
+//! `places`: shares the places for connections out by address. A place that becomes free goes to the address
+//! that holds the fewest; a few more are kept for addresses that hold none and for whoever shows the token,
+//! so that one machine that opens connections without end keeps nobody from HALT.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, TcpStream};
@@ -80,8 +80,8 @@ impl Places {
         self.changed.notify_all();
     }
 
-    /// Waits for the next connection that has a place, of `most` at once; `None` at the end. `is_token`: whether
-    /// the beginning of a request shows the token.
+    /// Waits for the next connection that has a place, of `most` at once; `None` at the end. `is_token`:
+    /// whether the beginning of a request shows the token.
     pub(crate) fn next(
         self: &Arc<Self>,
         most: usize,

@@ -1,6 +1,6 @@
-//! `health_checks`: checks field, team, network and computer against the host's settings. A [`Fault`] is what does
-//! not fit; a [`Finding`] is a fault with the time since which it lasts, its evidence and its remedy: one list for
-//! terminal, page and reports. Sans-IO; times on the host's clock.
+//! `health_checks`: checks field, team, network and computer against the host's settings. A [`Fault`] is what
+//! does not fit; a [`Finding`] is a fault with the time since which it lasts, its evidence and its remedy:
+//! one list for terminal, page and reports. Sans-IO; times on the host's clock.
 //!
 //! | module | finds |
 //! |---|---|
@@ -158,8 +158,8 @@ impl Fault {
     /// Whether it is repeated while it lasts.
     pub const fn is_urgent(&self) -> bool {
         match self {
-            // A laboratory's own field, a camera that is not switched on yet, clocks that are taken out: reported
-            // once.
+            // A laboratory's own field, a camera that is not switched on yet, clocks that are taken out:
+            // reported once.
             Self::Field(found) => found.fits.is_some(),
             Self::Camera(fault) => matches!(fault, CameraFault::Unused { .. } | CameraFault::Slow { .. }),
             Self::Team(fault) => fault.is_urgent(),

@@ -1,5 +1,5 @@
-//! `team`: checks of our team by referee, vision and radio: name and colour, the keeper, the number of robots,
-//! the place of a placement, and robots that only radio or only vision knows.
+//! `team`: checks of our team by referee, vision and radio: name and colour, the keeper, the number of
+//! robots, the place of a placement, and robots that only radio or only vision knows.
 
 use std::fmt;
 

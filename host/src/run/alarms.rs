@@ -50,9 +50,9 @@ impl Alarms {
         &self.now
     }
 
-    /// Checks all alarms; returns the lines to print. `second`: another vision beside the one that is followed,
-    /// `vision`: where vision is received, `missing`: sources that were never received, which are printed
-    /// elsewhere.
+    /// Checks all alarms; returns the lines to print. `second`: another vision beside the one that is
+    /// followed, `vision`: where vision is received, `missing`: sources that were never received, which are
+    /// printed elsewhere.
     pub(super) fn look(
         &mut self,
         now: Instant,
@@ -91,7 +91,8 @@ impl Alarms {
         self.drops.iter().map(|(what, dropped, _)| Fault::Flood { what, dropped: *dropped }).collect()
     }
 
-    /// The lines of findings that are new, or urgent and not printed for long; `vision`: where vision is received.
+    /// The lines of findings that are new, or urgent and not printed for long; `vision`: where vision is
+    /// received.
     fn print(&mut self, now: Instant, findings: &[Finding], vision: &str) -> Vec<String> {
         self.printed.retain(|(_, seen, _)| now.since(*seen) < FORGOTTEN_AFTER);
         let mut lines = Vec::new();

@@ -223,7 +223,8 @@ mod tests {
 
     #[test]
     fn the_children_of_a_strategy_end_with_it() {
-        let marker = format!("/tmp/onetwo-strategy-{}", std::process::id());
+        let name = format!("onetwo-strategy-{}", std::process::id());
+        let marker = std::env::temp_dir().join(name).display().to_string();
         let command = format!("sh -c 'trap \"\" TERM; (sleep 2; echo alive > {marker}) & sleep 60'");
         let mut process = StrategyProcess::start(&command, Duration::from_millis(100)).unwrap();
         assert_eq!(process.answer("a"), None);

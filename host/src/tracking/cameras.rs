@@ -1,11 +1,11 @@
-//! `cameras`: a clock for each camera. The cameras of a field may be on several computers whose clocks differ by
-//! milliseconds to hours; their frames are put on the clock of one of them, the reference. µs.
+//! `cameras`: a clock for each camera. The cameras of a field may be on several computers whose clocks differ
+//! by milliseconds to hours; their frames are put on the clock of one of them, the reference. µs.
 //!
 //! A camera's offset is first the difference of least delays: of all its packets in the last moments the
 //! quickest was as quick as the reference's. Robots that drive from one camera's view into another's correct
-//! it: a robot that appears ahead of where it was expected was seen later than the stamp says. The rest is the
-//! camera's lateness, in the network. Differences below [`EQUAL_WITHIN_US`] are no offset: clocks set by NTP
-//! agree better, and packets' delays no better.
+//! it: a robot that appears ahead of where it was expected was seen later than the stamp says. The rest is
+//! the camera's lateness, in the network. Differences below [`EQUAL_WITHIN_US`] are no offset: clocks set by
+//! NTP agree better, and packets' delays no better.
 
 use heapless::Vec;
 use protocol::Instant;
@@ -23,7 +23,8 @@ const SILENT_AFTER_US: i64 = 500_000;
 /// The rate of a clock is measured over this time, µs.
 const RATE_MIN_US: i64 = 300_000;
 const RATE_MAX_US: i64 = 1_000_000;
-/// Delays are compared within slots of this length, µs: a clock at nine tenths of real time runs 30 ms off in one.
+/// Delays are compared within slots of this length, µs: a clock at nine tenths of real time runs 30 ms off in
+/// one.
 const SLOT_US: i64 = 300_000;
 /// Packets overtake each other by less than this, µs; a larger step back is the clock's.
 const OVERTAKEN_US: i64 = 250_000;
@@ -43,7 +44,8 @@ const DIFFERS_FROM_US: i64 = 30_000;
 /// Unused frames are reported for this time after the last one, µs.
 const REPORTED_FOR_US: i64 = 1_000_000;
 
-/// Least difference between arrival and stamp, in the present slot and in the one before: number and difference.
+/// Least difference between arrival and stamp, in the present slot and in the one before: number and
+/// difference.
 #[derive(Clone, Copy, Debug, Default)]
 struct LeastBySlot([Option<(i64, i64)>; 2]);
 
@@ -56,8 +58,8 @@ impl LeastBySlot {
         }
     }
 
-    /// What this difference is greater by than the other's, in the newest slot before the present one that both
-    /// have, else in the present one.
+    /// What this difference is greater by than the other's, in the newest slot before the present one that
+    /// both have, else in the present one.
     fn beyond(&self, other: &Self) -> Option<i64> {
         let (present, _) = self.0[0]?;
         [present - 1, present].into_iter().find_map(|slot| Some(self.of(slot)? - other.of(slot)?))
@@ -168,8 +170,8 @@ impl CameraClock {
 }
 
 impl Cameras {
-    /// Takes a frame's stamps, and puts the frame on the reference's clock. `false`: its clock is ahead, and by
-    /// how much is not known yet.
+    /// Takes a frame's stamps, and puts the frame on the reference's clock. `false`: its clock is ahead, and
+    /// by how much is not known yet.
     pub(super) fn receive(&mut self, frame: &mut Frame, sent: Option<Captured>, arrived: Instant) -> bool {
         let (now, camera) = (arrived.0 as i64, frame.camera as usize);
         let stepped = self.cameras[camera].receive(frame.at, sent.unwrap_or(frame.at), now);
@@ -236,7 +238,8 @@ impl Cameras {
         }
     }
 
-    /// Corrects offsets by robots that came from another camera's view; `robots` as they were before the frame.
+    /// Corrects offsets by robots that came from another camera's view; `robots` as they were before the
+    /// frame.
     pub(super) fn compare(&mut self, frame: &Frame, robots: &Robots) {
         let Some(reference) = self.reference else { return };
         for seen in &frame.robots {

@@ -257,8 +257,8 @@ impl Robots {
         })
     }
 
-    /// The camera that saw a robot of a frame just before, where it was another one, and the time by which the
-    /// robot is ahead of its path, µs.
+    /// The camera that saw a robot of a frame just before, where it was another one, and the time by which
+    /// the robot is ahead of its path, µs.
     pub(super) fn crossing(&self, seen: &RobotSeen, frame: &Frame) -> Option<(u32, i64)> {
         let track = self.believed[index(seen.who.colour)][seen.who.id.index()].as_ref()?;
         let unseen = frame.at - track.seen;

@@ -4,8 +4,8 @@
 //!
 //! Senders are ranked by age. A sender that sends a camera that a higher one sends is refused with all its
 //! cameras; one that sends the same datagrams is the same vision by another network, and is followed too. The
-//! ranks change where evidence says so: the followed sender has fallen silent, or our robots, as the radio and
-//! their orders show them, are on the other one's field.
+//! ranks change where evidence says so: the followed sender has fallen silent, or our robots, as the radio
+//! and their orders show them, are on the other one's field.
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::net::SocketAddr;
@@ -33,8 +33,8 @@ const DATAGRAMS_KEPT: usize = 8;
 const COPY_LASTS: Duration = Duration::millis(1_000);
 /// Robots' motion is compared over this time.
 const COMPARED_OVER: Duration = Duration::millis(1_000);
-/// In that time a robot that is ordered elsewhere moves farther than the first, m; one that stands stays within
-/// the second.
+/// In that time a robot that is ordered elsewhere moves farther than the first, m; one that stands stays
+/// within the second.
 const MOVES_FROM_M: f32 = 0.2;
 const STANDS_WITHIN_M: f32 = 0.05;
 /// A sender that shows this number more of the robots that are received is the right one.

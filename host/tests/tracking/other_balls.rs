@@ -1,4 +1,5 @@
-//! `other_balls`: tests: spare balls, other teams' balls and shoes never become the ball while a robot covers it.
+//! `other_balls`: tests: spare balls, other teams' balls and shoes never become the ball while a robot covers
+//! it.
 
 use geometry::Point;
 use host::tracking::Tracker;

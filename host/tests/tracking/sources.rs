@@ -52,8 +52,8 @@ fn packets(computers: [Computer; 2], seconds: f64) -> Vec<(f64, WrapperPacket)> 
     packets
 }
 
-/// From `from` s on: the worst error of a robot, mm, the least number of robots, and the share of packets with the
-/// ball within 0.1 m.
+/// From `from` s on: the worst error of a robot, mm, the least number of robots, and the share of packets
+/// with the ball within 0.1 m.
 fn follow(computers: [Computer; 2], from: f64) -> (f64, usize, f64, Vec<CameraStatus>) {
     let mut tracker = Tracker::default();
     let (mut worst, mut least, mut balls, mut all) = (0.0_f64, usize::MAX, 0_u32, 0_u32);

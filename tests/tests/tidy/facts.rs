@@ -230,6 +230,9 @@ const FACTS: [Fact; 10] = [
             ("firmware/brain/src/body/omni/drivetrain.rs", "BOTH_BRAKE"),
             // How gently a carried ball is brought to its place.
             ("firmware/brain/src/skills/wheels/dribble.rs", "BRAKES"),
+            // The champions' robots, as their team ships them for simulation.
+            ("host/study/src/drills/script.rs", "ACCELERATION_M_S2"),
+            ("host/study/src/drills/script.rs", "BRAKE_M_S2"),
         ],
     },
     Fact {

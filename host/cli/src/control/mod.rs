@@ -57,8 +57,8 @@ pub(crate) struct ControlArgs {
     /// Our keeper's number, until the referee sends another.
     #[arg(long, value_name = "ID")]
     keeper: Option<u8>,
-    /// The interface that receives and sends multicast, its name or address; by default it is received on every
-    /// interface.
+    /// The interface that receives and sends multicast, its name or address; by default it is received on
+    /// every interface.
     #[arg(long, value_name = "NAME")]
     interface: Option<String>,
     /// Where the robots are: `sim://HOST[:PORT]` (brains of our own in a simulator; its control port, 10300),

@@ -46,12 +46,13 @@ pub(super) struct ScenesArgs {
     /// (man against man), zone (a wall that follows the ball) and round-1 (second-level threats).
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
     opponents: Vec<MatchTeam>,
-    /// Instead of scenes: these drills against scripted opponents, with commas between: carrier, marker, cross,
-    /// rebound, shielder, goal-line. Of our team's options --team, --world, --seed, --jobs, --csv, --json count.
+    /// Instead of scenes: these drills against scripted opponents, with commas between: carrier, marker,
+    /// cross, rebound, shielder, goal-line. Of our team's options --team, --world, --seed, --jobs, --csv,
+    /// --json count.
     #[arg(long = "drill", value_name = "LIST", value_delimiter = ',', value_parser = drill)]
     drills: Vec<DrillKind>,
-    /// Draw the drills around the situations of this CSV file, plain or gzip, with its index.csv beside it; by
-    /// default around those that come with the program.
+    /// Draw the drills around the situations of this CSV file, plain or gzip, with its index.csv beside it;
+    /// by default around those that come with the program.
     #[arg(long, value_name = "FILE", requires = "drills")]
     situations: Option<PathBuf>,
     /// Tries of each drill.

@@ -18,10 +18,11 @@ fn a_draft_of_a_problem_is_checked_and_retrieved_from_it() {
     assert!(found.stdout.starts_with(r#"{"case":"center/draft","id":0,"#), "{}", found.stdout);
 
     let text = fs::read_to_string(&file).unwrap();
-    fs::write(&file, "mine").unwrap();
+    let mine = format!("# mine\n{text}");
+    fs::write(&file, &mine).unwrap();
     let again = cases("new", &directory, &out, PROBLEM);
     assert!(again.code == 1 && again.stderr.contains("--force writes over it"), "{}", again.stderr);
-    assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
+    assert_eq!(fs::read_to_string(&file).unwrap(), mine);
     assert_eq!(cases("new", &directory, &[&out[..], &["--force"]].concat(), PROBLEM).code, 0);
     assert_eq!(fs::read_to_string(&file).unwrap(), text);
 }

@@ -70,7 +70,6 @@ fn cells_add_up_to_the_whole_in_snapshot_and_table() {
 #[test]
 fn what_cannot_be_counted_is_refused_in_words() {
     let directory = worked_example("refused");
-    let empty = library("empty", &[]);
     let recorded = directory.join("broken.jsonl");
     fs::write(&recorded, format!("{PROBLEM}\n{{\n")).unwrap();
     let recorded = recorded.to_str().unwrap();
@@ -88,7 +87,6 @@ fn what_cannot_be_counted_is_refused_in_words() {
         ),
         ("coverage", &directory, &["--defending", "blue"], 2, "expected yellow"),
         ("stats", &directory, &["--case", "front/none"], 1, "no case \"front/none\""),
-        ("stats", &empty, &[], 1, "holds no case"),
         ("stats", &directory, &["--from", recorded], 1, "line 2: "),
     ];
     for (verb, directory, more, code, description) in table {

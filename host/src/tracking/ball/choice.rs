@@ -109,8 +109,8 @@ impl Balls {
         if held { HELD_FORGOTTEN_AFTER_S } else { FORGOTTEN_AFTER_S }
     }
 
-    /// Makes another track the ball where this one is not visible and the other can be it, or where this one is
-    /// out of the field.
+    /// Makes another track the ball where this one is not visible and the other can be it, or where this one
+    /// is out of the field.
     pub(super) fn choose(&mut self, now: Captured, around: Around<'_>) {
         let playable = |track: &Track| around.scene.is_playable(track.plane.position);
         let current = self.chosen_track();

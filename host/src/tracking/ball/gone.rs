@@ -1,9 +1,9 @@
 //! `gone`: rules for a ball that no camera sees, and for other balls. The ball may be covered by a robot for
-//! seconds; a blob elsewhere is the ball only where ours can have got there since. m; times on vision's clock,
-//! µs.
+//! seconds; a blob elsewhere is the ball only where ours can have got there since. m; times on vision's
+//! clock, µs.
 //!
-//! A blob that was seen beside the ball is another ball, and stays another one: a spare ball at the touch line,
-//! a shoe. It replaces ours once ours has been gone for longer than robots cover balls.
+//! A blob that was seen beside the ball is another ball, and stays another one: a spare ball at the touch
+//! line, a shoe. It replaces ours once ours has been gone for longer than robots cover balls.
 
 use geometry::{Field, Point};
 use protocol::Who;
@@ -13,8 +13,8 @@ use super::{Around, Balls, UNSEEN_AFTER_S};
 use crate::tracking::robots::{micros, seconds};
 use crate::tracking::seen::{Captured, Frame};
 
-/// A robot whose centre is this near may cover the ball: its hull, and the shadow of a robot 0.15 m high below a
-/// camera that sees it at 60°.
+/// A robot whose centre is this near may cover the ball: its hull, and the shadow of a robot 0.15 m high
+/// below a camera that sees it at 60°.
 const COVERS_WITHIN_M: f32 = 0.35;
 /// Longest time for which a robot covers a ball, s: a placement across the field.
 const COVERED_MAX_S: f32 = 20.0;
@@ -31,15 +31,16 @@ const REAPPEARS_WITHIN_M: f32 = 0.3;
 const UNSEEN_SPEED_M_S: f32 = 6.5;
 /// A blob that first shows on the field within this time after ours vanished was put there, s.
 const AT_ONCE_S: f32 = 0.1;
-/// A ball that a robot covers is not elsewhere on the field before this time, s, and not beside it before that.
+/// A ball that a robot covers is not elsewhere on the field before this time, s, and not beside it before
+/// that.
 const COVERED_MIN_S: f32 = 0.3;
 const COVERED_BESIDE_MIN_S: f32 = 5.0;
 /// Camera frames of a blob that shows beside the ball.
 const FRAMES_BESIDE: u16 = 5;
 /// Two blobs of one camera frame at least this far apart are two balls, m.
 const BESIDE_MIN_M: f32 = 0.3;
-/// Two blobs that were seen for this time by any cameras are two balls too, s: longer than a chip that cameras
-/// see at different places.
+/// Two blobs that were seen for this time by any cameras are two balls too, s: longer than a chip that
+/// cameras see at different places.
 const BESIDE_FOR_S: f32 = 1.0;
 /// A blob this near the place of another ball is that ball, m.
 const SAME_PLACE_M: f32 = 0.15;
@@ -110,7 +111,8 @@ impl Balls {
         (unseen - covered) * UNSEEN_SPEED_M_S >= gone.place.distance(track.plane.position)
     }
 
-    /// Whether a blob first showed where the ball comes out: at the robot that covers it, or where it vanished.
+    /// Whether a blob first showed where the ball comes out: at the robot that covers it, or where it
+    /// vanished.
     fn returned(gone: &Gone, track: &Track, now: Captured, around: Around<'_>) -> bool {
         let off = gone.place.distance(track.origin);
         let Some(cover) = gone.cover else {

@@ -1,5 +1,5 @@
-//! `drills`: our team against scripted opponents, from starts drawn around recorded situations: what a carrier
-//! at our area, a marker at our free kick, a cross, a rebound or a shielded ball cost us.
+//! `drills`: our team against scripted opponents, from starts drawn around recorded situations: what a
+//! carrier at our area, a marker at our free kick, a cross, a rebound or a shielded ball cost us.
 //!
 //! ```text
 //! situations.csv ─► moments ─► DrillStart ─► our host and robots against a Script ─► DrillRow ─► DrillResult
@@ -33,19 +33,19 @@ geometry::labels! {
         /// One of theirs has the ball at our area, goes along it and shoots when the goal is open. Succeeds
         /// without a goal within 5 s.
         Carrier = "carrier",
-        /// Our free kick in our half; one of theirs 0.6 to 0.8 m from the ball steps into its line, the others
-        /// follow ours. Succeeds where a mate has the ball next and no goal falls within 8 s.
+        /// Our free kick in our half; one of theirs 0.6 to 0.8 m from the ball steps into its line, the
+        /// others follow ours. Succeeds where a mate has the ball next and no goal falls within 8 s.
         Marker = "marker",
-        /// Their free kick from 2.5 m off our corner to 2.4 m before our goal, and a first-touch shot of 5 m/s.
-        /// Succeeds without a goal within 4 s.
+        /// Their free kick from 2.5 m off our corner to 2.4 m before our goal, and a first-touch shot of 5
+        /// m/s. Succeeds without a goal within 4 s.
         Cross = "cross",
         /// A slow ball before our keeper, one of theirs a metre off. Succeeds where ours touch it within
         /// 0.4 s.
         Rebound = "rebound",
         /// One of theirs shields the ball in our half. Succeeds where ours touch it within 3 s.
         Shielder = "shielder",
-        /// A ball at our goal line, between the posts, beside one, or at the area's edge. Succeeds where it is
-        /// half a metre away within 5 s, and no goal.
+        /// A ball at our goal line, between the posts, beside one, or at the area's edge. Succeeds where it
+        /// is half a metre away within 5 s, and no goal.
         GoalLine = "goal-line",
     }
 }

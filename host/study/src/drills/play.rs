@@ -1,5 +1,5 @@
-//! `play`: plays one try of a drill: everything is put in place in HALT, then play begins. Ours is a host with
-//! six or eleven robots; theirs are bodies that the script moves.
+//! `play`: plays one try of a drill: everything is put in place in HALT, then play begins. Ours is a host
+//! with six or eleven robots; theirs are bodies that the script moves.
 
 use hil_sim::NativeBackend;
 use hil_sim::small_size::referee::Restart;

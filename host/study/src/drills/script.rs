@@ -134,7 +134,7 @@ impl Script {
         }
         let carried = robot.pose.position.distance(self.start.theirs[self.start.lead].position);
         let aimed = (face - robot.pose.heading).abs() < AIMED_RAD;
-        let shoots = gap.angle > OPEN_RAD || carried > CARRIES_MAX_M;
+        let shoots = gap.angle > OPEN_DEG.to_radians() || carried > CARRIES_MAX_M;
         let goal = field.goal_center(OUR_END);
         let out = (robot.pose.position - goal).unit().unwrap_or(Vector::new(1.0, 0.0));
         let along = out.rotated(Angle::new(self.side * std::f32::consts::FRAC_PI_2));
@@ -148,8 +148,8 @@ impl Script {
         }
     }
 
-    /// Keeps the ball at its front with its back to the nearest of ours, and moves away from it, as far as the
-    /// rules let it dribble.
+    /// Keeps the ball at its front with its back to the nearest of ours, and moves away from it, as far as
+    /// the rules let it dribble.
     fn shield(&self, world: &World, robot: &Robot) -> Wanted {
         let field = &world.pitch().field;
         if !robot.ball_contact {
@@ -393,8 +393,8 @@ const CARRY_SPEED_M_S: f32 = 0.8;
 const CARRIES_MAX_M: f32 = 0.8;
 /// A shielder stays this near to where it began, m.
 const SHIELDS_WITHIN_M: f32 = 0.35;
-/// Open angle at which it shoots, rad: 8°, the least with which goals fell.
-const OPEN_RAD: f32 = 0.14;
+/// Open angle at which it shoots, degrees: the least with which goals fell.
+const OPEN_DEG: f32 = 8.0;
 /// Heading error of a shot, rad.
 const AIMED_RAD: f32 = 0.05;
 /// Speed of shots, m/s.

@@ -1,5 +1,5 @@
-//! `start`: starts of drills, drawn around recorded situations: a moment, mirrored or not, every place moved a
-//! little, and the drill's own robots and ball put where it needs them. m, m/s, rad; ours defend −x.
+//! `start`: starts of drills, drawn around recorded situations: a moment, mirrored or not, every place moved
+//! a little, and the drill's own robots and ball put where it needs them. m, m/s, rad; ours defend −x.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -7,7 +7,7 @@ use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use hil_sim::Stream;
 use hil_sim::small_size::Ball;
 use rules::restart::nearest_free_kick_spot;
-use rules::{FieldSpec, League};
+use rules::{FieldSpec, League, RobotSpec};
 
 use super::DrillKind;
 use super::situations::{Situation, SituationFrame};
@@ -15,7 +15,7 @@ use super::situations::{Situation, SituationFrame};
 /// The end that ours defend.
 pub(super) const OUR_END: GoalEnd = GoalEnd::Negative;
 /// From a robot's centre to the centre of a ball at its dribbler, m: front and ball of the nominal robot.
-pub(super) const BALL_AHEAD_M: f32 = 0.0945;
+pub(super) const BALL_AHEAD_M: f32 = RobotSpec::OURS.hull.ball_at();
 
 /// How play begins.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -54,8 +54,8 @@ impl Receiver {
         Ok(Self { inbox: Inbox::new(socket.into(), bound), group: address, joined })
     }
 
-    /// Joins the group on interfaces that came or changed since, and leaves out those that went; returns whether
-    /// the list changed. Cheap enough for once a second.
+    /// Joins the group on interfaces that came or changed since, and leaves out those that went; returns
+    /// whether the list changed. Cheap enough for once a second.
     pub fn rejoin(&mut self, by: &Interfaces) -> bool {
         // A named interface that is away comes back, or the next call fails again.
         let Ok(there_are) = by.choose() else { return false };
