@@ -77,7 +77,7 @@ fn a_client_sees_its_robot_move_and_is_informed_what_is_wrong() {
 }
 
 #[test]
-fn a_taken_port_is_reported_and_the_rest_goes_on() {
+fn while_a_port_is_taken_nothing_is_sent_and_vision_comes_once_it_is_free() {
     let vision = socket();
     let to = vision.local_addr().expect("an address").to_string();
     let taken = socket();
@@ -86,6 +86,10 @@ fn a_taken_port_is_reported_and_the_rest_goes_on() {
     let mut simulator = Running::start(&[&simulate[..], &["--vision", &to, "--duration", "60"]].concat());
     let (_, line) = simulator.wait_for("is taken");
     assert!(line.contains(&port) && line.contains("tried again"), "{line}");
+    vision.set_nonblocking(true).expect("a socket");
+    assert!(vision.recv_from(&mut [0; 8192]).is_err(), "a field that no program can command is not shown");
+    vision.set_nonblocking(false).expect("a socket");
+    drop(taken);
     image(&vision);
 }
 

@@ -1,11 +1,10 @@
 //! `drivers`: the board's parts as drivers, each from its pins.
 
 use embassy_stm32::adc::SampleTime;
-use embassy_stm32::gpio::OutputType::PushPull;
 use embassy_stm32::mode::Blocking;
 use embassy_stm32::peripherals::{IWDG1, TIM1, TIM2, TIM3, TIM4, TIM5, TIM8, TIM15, TIM16};
 use embassy_stm32::spi::Spi;
-use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwmChannel};
+use embassy_stm32::timer::simple_pwm::SimplePwmChannel;
 use embassy_stm32::usart;
 use embassy_stm32::{bind_interrupts, dma, peripherals};
 use stm32_kit::analog::AnalogSettings;

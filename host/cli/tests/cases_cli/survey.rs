@@ -73,7 +73,7 @@ fn what_cannot_be_counted_is_refused_in_words() {
     let recorded = directory.join("broken.jsonl");
     fs::write(&recorded, format!("{PROBLEM}\n{{\n")).unwrap();
     let recorded = recorded.to_str().unwrap();
-    let table: [(&str, &std::path::Path, &[&str], i32, &str); 9] = [
+    let table: [(&str, &std::path::Path, &[&str], i32, &str); 8] = [
         ("coverage", &directory, &["--problems", "0"], 2, "0 is not in 1..="),
         ("coverage", &directory, &["--cell=-5"], 2, "-5 is not in 1..="),
         ("coverage", &directory, &["--cell", "1"], 1, "take a larger edge"),
