@@ -68,7 +68,8 @@ mod robot {
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(_spawner: embassy_executor::Spawner) {
+async fn main(spawner: embassy_executor::Spawner) {
+    let _ = spawner;
     use board_kit::motors::Bridge as _;
     use embassy_time::{Duration, Ticker, Timer};
     use robot::MOTOR;

@@ -9,7 +9,8 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(_spawner: embassy_executor::Spawner) {
+async fn main(spawner: embassy_executor::Spawner) {
+    let _ = spawner;
     use board_kit::imu::Gyroscope as _;
     use board_stm32::drivers;
     use embassy_time::Timer;

@@ -9,7 +9,8 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(_spawner: embassy_executor::Spawner) {
+async fn main(spawner: embassy_executor::Spawner) {
+    let _ = spawner;
     use embassy_stm32::gpio::{Level, Output, Speed};
 
     let lamps = board_stm32::start().lamps;

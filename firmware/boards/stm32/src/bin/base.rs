@@ -12,7 +12,8 @@
 
 #[cfg(target_os = "none")]
 #[embassy_executor::main]
-async fn main(_spawner: embassy_executor::Spawner) {
+async fn main(spawner: embassy_executor::Spawner) {
+    let _ = spawner;
     use board_stm32::drivers;
     use stm32_kit::pwm::low;
 
