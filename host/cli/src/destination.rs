@@ -170,7 +170,7 @@ pub(crate) enum DestinationError {
         printable_path(file)
     )]
     OtherKind { file: PathBuf, holds: &'static str, new: &'static str },
-    /// A directory that would be written anew holds more than what was written there.
+    /// A directory that would be replaced holds files other than those written there.
     #[error("{} would be lost with its directory, which is written anew; name another one", printable_path(.0))]
     Foreign(PathBuf),
     #[error("cannot write {}: {error}", printable_path(file))]

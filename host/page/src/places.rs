@@ -1,6 +1,6 @@
 //! `places`: shares the places for connections out by address. A place that becomes free goes to the address
-//! that holds the fewest; a few more are kept for addresses that hold none and for whoever shows the token,
-//! so that one machine that opens connections without end keeps nobody from HALT.
+//! that holds the fewest; a few more are kept for addresses that hold none and for clients that show the
+//! token, so that one machine that opens connections without end cannot block HALT.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::net::{IpAddr, TcpStream};

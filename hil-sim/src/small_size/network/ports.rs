@@ -97,8 +97,8 @@ impl Ports {
         }
     }
 
-    /// Whether every port is open: a field that nobody can command is not sent, since its vision would be
-    /// mixed with that of the field that can be.
+    /// Whether every port is open. The vision of a field that no program can command is not sent: it would be
+    /// mixed with that of the field that can be commanded.
     pub(super) fn serve(&self) -> bool {
         self.endpoints.iter().all(|entry| entry.socket.is_some())
     }

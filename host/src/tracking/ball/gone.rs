@@ -27,7 +27,7 @@ const PASSED_ON_WITHIN_M: f32 = 0.4;
 /// Fastest ball that reappears by itself, m/s, and its distance in no time, m.
 const REAPPEARS_M_S: f32 = 10.0;
 const REAPPEARS_WITHIN_M: f32 = 0.3;
-/// Speed of a ball that nobody saw travel, m/s.
+/// Speed of a ball that travelled unseen, m/s.
 const UNSEEN_SPEED_M_S: f32 = 6.5;
 /// A blob that first shows on the field within this time after ours vanished was put there, s.
 const AT_ONCE_S: f32 = 0.1;
@@ -44,7 +44,7 @@ const BESIDE_MIN_M: f32 = 0.3;
 const BESIDE_FOR_S: f32 = 1.0;
 /// A blob this near the place of another ball is that ball, m.
 const SAME_PLACE_M: f32 = 0.15;
-/// The place of another ball that is not seen is remembered for this time, s: somebody stands in front of it.
+/// The place of another ball that is not seen is remembered for this time, s: a robot or a person stands in front of it.
 const PLACE_KEPT_S: f32 = 30.0;
 /// Places remembered.
 const PLACES_MAX: usize = 4;
