@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use clap::Args;
 use hil_sim::small_size::worlds::WorldChoice;
@@ -11,14 +10,13 @@ use rules::League;
 use study::drills::{DrillKind, DrillPlan, drill_results, drill_table, situations};
 use study::matches::MatchTeam;
 use study::scenes::{SceneEffect, ScenePlan, scene_effects, scene_table};
-use study::store::{EvaluationError, Experiment, csv_hash, to_csv};
+use study::store::{EvaluationError, csv_hash, to_csv};
 
 use super::report::insert;
 use super::work::{self, write};
 use crate::Failure;
 use crate::args::parsers::league;
 use crate::destination::{self, FileKind};
-use crate::progress::Progress;
 
 /// Which scenes, and how they are printed.
 #[derive(Debug, Args)]
@@ -87,13 +85,7 @@ pub(super) fn run(args: &ScenesArgs) -> Result<ExitCode, Failure> {
         return run_drills(args);
     }
     let plan = args.plan();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
-    let pool = pool.map_err(Failure::Threads)?;
-    let (line, done, of) = (Progress::open(), AtomicU64::new(0), plan.len() as u64);
-    line.set_text("playing");
-    let on_played = || line.set(done.fetch_add(1, Ordering::Relaxed) + 1, of);
-    let rows = pool.install(|| plan.play_all(&on_played))?;
-    drop(line);
+    let rows = work::play_all(&plan, plan.len() as u64, args.jobs)?;
     let csv = to_csv(&rows).map_err(EvaluationError::from)?;
     if let Some(file) = &args.csv {
         write(file, FileKind::Csv, &csv)?;
@@ -126,13 +118,8 @@ fn run_drills(args: &ScenesArgs) -> Result<ExitCode, Failure> {
         world: args.world,
         team: args.team,
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
-    let pool = pool.map_err(Failure::Threads)?;
-    let (line, done) = (Progress::open(), AtomicU64::new(0));
     let of = plan.drills.len() as u64 * u64::from(plan.tries);
-    let on_played = || line.set(done.fetch_add(1, Ordering::Relaxed) + 1, of);
-    let rows = pool.install(|| plan.play_all(&on_played))?;
-    drop(line);
+    let rows = work::play_all(&plan, of, args.jobs)?;
     let csv = to_csv(&rows).map_err(EvaluationError::from)?;
     if let Some(file) = &args.csv {
         write(file, FileKind::Csv, &csv)?;

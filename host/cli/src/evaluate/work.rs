@@ -1,16 +1,17 @@
 //! `work`: long evaluations on several threads, with a progress bar on a terminal; Ctrl-C keeps what is
 //! finished.
 
+use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use arena::cases::LibraryHandle;
 use arena::{CaseNames, ROBOTS, Setup};
 use clap::Args;
 use study::evaluation::{Evaluation, EvaluationPlan, Results, TrialRow, summary, verdicts};
-use study::store::{EvaluationError, RunProgress, Shard, StoredExperiment};
+use study::store::{EvaluationError, Experiment, RunProgress, Shard, StoredExperiment};
 
 use super::report::{self, ReportArgs};
 use crate::Failure;
@@ -43,8 +44,7 @@ impl WorkArgs {
 
     /// Threads to play on.
     pub(super) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.jobs.map_or(0, usize::from));
-        pool.build().map_err(Failure::Threads)
+        threads(self.jobs)
     }
 
     /// The directory, created if missing; without earlier trials of that shard if `fresh` is set, and without
@@ -121,6 +121,26 @@ pub(super) fn play(
     title: &str,
 ) -> Result<Vec<TrialRow>, Failure> {
     with_bar(pool, title, |on_progress| evaluation.play_shard(shard, file, on_progress))
+}
+
+/// That many threads; as many as cores by default.
+fn threads(jobs: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.map_or(0, usize::from));
+    pool.build().map_err(Failure::Threads)
+}
+
+/// Plays all `of` jobs of a plan whose rows are not stored.
+pub(super) fn play_all<E: Experiment<Error: Error + Send + Sync + 'static>>(
+    plan: &E,
+    of: u64,
+    jobs: Option<u16>,
+) -> Result<Vec<E::Row>, Failure> {
+    let (line, done) = (progress::Progress::open(), AtomicU64::new(0));
+    line.set_text("playing");
+    let rows = threads(jobs)?
+        .install(|| plan.play_all(&|| line.set(done.fetch_add(1, Ordering::Relaxed) + 1, of)))?;
+    drop(line);
+    Ok(rows)
 }
 
 /// Plays on a pool of threads, with `title` before a bar; Ctrl-C ends it in order.
