@@ -1,7 +1,7 @@
 //! `destination`: the files that verbs write. One rule for all of them: an output is no input of the same
 //! command, no other output of it, and no file that holds something else than what is written.
 //!
-//! [`check`] is called before the work, so that nothing is lost and nothing is computed in vain; [`write`]
+//! [`check`] is called before the work, so that nothing is lost and nothing is computed in vain; [`write()`]
 //! looks again. Devices and pipes hold nothing and are written to as they are.
 
 use std::fs::{self, File, OpenOptions};

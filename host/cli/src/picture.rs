@@ -17,7 +17,7 @@ pub(crate) fn write(file: &Path, svg: &str) -> Result<(), Failure> {
     Ok(destination::write(file, kind(file), &bytes)?)
 }
 
-/// Kind of the file that [`write`] makes of that name.
+/// Kind of the file that [`write()`] makes of that name.
 pub(crate) fn kind(file: &Path) -> FileKind {
     if has_extension(file, "png") { FileKind::Png } else { FileKind::Svg }
 }

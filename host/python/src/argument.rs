@@ -117,7 +117,7 @@ fn text(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Text> {
 /// The dict of an argument, if one is given.
 pub fn dict<'py>(name: &str, value: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Bound<'py, PyDict>>> {
     let Some(value) = value.filter(|value| !value.is_none()) else { return Ok(None) };
-    let dict = value.cast::<PyDict>().map(Clone::clone);
+    let dict = value.cast::<PyDict>().cloned();
     dict.map(Some).map_err(|_| refused(format!("{name} {}: take a dict", shown(value))))
 }
 

@@ -4,10 +4,13 @@ use std::path::PathBuf;
 
 use arena::cases::{Answer, Chosen, LibraryHandle, explained_by, problem};
 use pyo3::prelude::*;
-use pyo3::types::{PyDictMethods, PyString};
+use pyo3::types::{PyAnyMethods, PyDictMethods, PyString};
 
 use crate::argument::{self, Text};
 use crate::{from_json, refused};
+
+/// What `pickle` calls to open a library again: the function and its league and directory.
+type Pickle<'py> = (Bound<'py, PyAny>, (String, Option<PathBuf>));
 
 /// A case library, opened once and asked many times.
 #[pyclass(frozen, module = "onetwo")]
@@ -26,7 +29,7 @@ impl Library {
         directory: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let directory = directory.filter(|directory| !directory.is_none());
-        let directory = directory.map(|given| given.extract::<PathBuf>()).transpose();
+        let directory = directory.map(PyAnyMethods::extract::<PathBuf>).transpose();
         let directory = directory.map_err(|_| refused("directory: take a path"))?;
         let handle = py.detach(|| match &directory {
             Some(directory) => LibraryHandle::read(directory, |_, _| ()),
@@ -91,7 +94,7 @@ impl Library {
     }
 
     /// A pickle names the league or the directory, whose files are read again.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String, Option<PathBuf>))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Pickle<'py>> {
         let directory = self.handle.directory().map(std::path::absolute).transpose()?;
         let function = py.import("onetwo._native")?.getattr("_library")?;
         Ok((function, (self.handle.league().to_owned(), directory)))
