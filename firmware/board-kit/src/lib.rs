@@ -5,7 +5,7 @@
 //! |---|---|
 //! | the list of what is on a board, its start and its tasks | `robot` (robots only) |
 //! | motors, three schemes behind one trait | [`motors`] |
-//! | motors with their encoders | [`wheels`] |
+//! | counters of encoders; motors with their encoders | [`encoders`], [`wheels`] |
 //! | gyroscope and accelerometer | [`imu`] |
 //! | readings taken a thousand times a second | [`sampling`] |
 //! | radio on a serial line; radio chip on a bus | `radio`, `nrf24` (robots only) |
@@ -27,6 +27,7 @@ pub mod base_station;
 #[cfg(target_os = "none")]
 pub mod bring_up;
 pub mod crash;
+pub mod encoders;
 pub mod imu;
 pub mod ledger;
 pub mod motors;

@@ -9,10 +9,10 @@ use runtime::kicker::{KickerAct, KickerState};
 use runtime::ports;
 use runtime::wheel::WHEELS;
 
+use crate::encoders::EncoderCounts;
 use crate::imu::{Gyroscope, ImuError, Reading};
 use crate::motors::MotorDrivers;
 use crate::sampling::AnalogInputs;
-use crate::wheels::EncoderCounts;
 
 /// A part that is not there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -5,18 +5,8 @@ use runtime::ports::WheelsPort;
 use runtime::sense::Encoder;
 use runtime::wheel::WHEELS;
 
+use crate::encoders::EncoderCounts;
 use crate::motors::MotorDrivers;
-
-/// Counters of the wheels' encoders.
-pub trait EncoderCounts {
-    /// Distance of the rim for a count, m; negative where it counts down when the wheel turns the robot
-    /// counter-clockwise.
-    const RIM_PER_COUNT: f32;
-
-    /// Counts in the order of the wheels on the wire (front right, back right, back left, front left); they
-    /// wrap.
-    fn counts(&self) -> [u16; WHEELS];
-}
 
 /// Motors with their encoders.
 #[derive(Debug)]

@@ -40,7 +40,7 @@ const UNSEEN: f32 = 0.2;
 /// Without a sight for longer, a teammate's report may be better than the own estimate: two steps' misses and
 /// the head's glances are shorter.
 #[cfg(feature = "legged")]
-const STALE: Duration = Duration::millis(1200);
+const BALL_STALE: Duration = Duration::millis(1200);
 /// A ball slower than this may be grabbed, m/s.
 const GRAB_SPEED: f32 = 0.4;
 /// A ball slower than this is stationary, m/s: below the apparent speed that a walking body's sway gives a
@@ -390,7 +390,7 @@ impl Belief {
     /// Whether the own estimate of the ball has lacked sights for so long that a teammate's may be better.
     #[cfg(feature = "legged")]
     fn is_ball_stale(&self, now: Instant) -> bool {
-        self.has_camera && self.perception.ball_age(now) > STALE
+        self.has_camera && self.perception.ball_age(now) > BALL_STALE
     }
 
     /// Whether the own estimate of the ball has lacked sights for so long that a teammate's may be better.

@@ -85,7 +85,7 @@ mod tests {
     use crate::skills::wheels::testing::belief;
     use protocol::quantized::WirePoint;
 
-    const AT: WirePoint = WirePoint { x: 1000, y: 0 };
+    const TARGET: WirePoint = WirePoint { x: 1000, y: 0 };
 
     #[test]
     fn kicker_of_a_restart_avoids_the_ball_until_another_touch() {
@@ -94,9 +94,9 @@ mod tests {
         let kick = KickOrder::Flat(400);
         let directives = [
             Directive::GetBall { face: None },
-            Directive::Kick { at: AT, kick },
-            Directive::Pass { at: AT, receiver: protocol::RobotId::new(1).unwrap(), kick, ready: true },
-            Directive::Receive { at: AT, then: None },
+            Directive::Kick { at: TARGET, kick },
+            Directive::Pass { at: TARGET, receiver: protocol::RobotId::new(1).unwrap(), kick, ready: true },
+            Directive::Receive { at: TARGET, then: None },
         ];
         for directive in directives {
             let Some(Intent::Drive(drive)) = TaskState::default().step(Instant(0), &b, &directive) else {

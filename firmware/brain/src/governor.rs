@@ -315,7 +315,7 @@ fn is_finite(twist: Twist<Body>) -> bool {
 
 /// Whether it stands, by wheels and gyroscope; false where they report NaN.
 fn stands(odometry: Twist<Body>) -> bool {
-    odometry.linear.norm() < STANDS && odometry.angular.abs() < STANDS_TURN
+    odometry.linear.norm() < STANDSTILL_SPEED && odometry.angular.abs() < STANDS_TURN
 }
 
 fn is_kick(kick: OmniKick) -> bool {
@@ -365,7 +365,7 @@ const LETS_GO: [LimitReason; 3] = [LimitReason::Silence, LimitReason::Tipped, Li
 /// Standstill time before the motors are released: ten times the host's shortest silence that counts.
 const LET_GO_AFTER: Duration = Duration::millis(500);
 /// A slower robot stands, m/s and rad/s: a few counts of an encoder in a step, and a gyroscope's noise.
-const STANDS: f32 = 0.05;
+const STANDSTILL_SPEED: f32 = 0.05;
 const STANDS_TURN: f32 = 0.2;
 /// Longest step: after a gap a robot brakes as in one of these.
 const STEP_MAX: Duration = Duration::millis(50);

@@ -1,6 +1,6 @@
 //! `encoders`: wheel-speed measurement. Four timers count the edges of two channels each.
 
-use board_kit::wheels::EncoderCounts;
+use board_kit::encoders::EncoderCounts;
 use embassy_stm32::timer::GeneralInstance4Channel;
 use embassy_stm32::timer::qei::Qei;
 use rules::{RobotSpec, WheelSpec};

@@ -23,7 +23,9 @@ export function showBoard() {
   const act = scene.game.action_left == null || scene.game.action_left <= 0 || ["run", "halt", "stop"].includes(scene.game.phase) ? "" : ` · ${number(scene.game.action_left)} s left`;
   const next = scene.game.next ? ` · then ${scene.game.next}` : "";
   say(byId("phase-more"), over ? "" : `${scene.game.stage}${left}${act}${next}`);
-  const alarms = scene.alarms ?? [];
+  // Every alarm is a finding too, in the same order: it dates it.
+  const since = (finding) => (finding ? ` (since ${clock(finding.since_s, 0)})` : "");
+  const alarms = (scene.alarms ?? []).map((words, i) => words + since(scene.findings?.[i]));
   byId("alarms").hidden = alarms.length === 0;
   fill(byId("alarms"), JSON.stringify(alarms), () => alarms.map((words) => el("li", {}, words)));
 }

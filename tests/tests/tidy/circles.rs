@@ -229,10 +229,8 @@ const KNOWN: [(&str, &[&str]); 7] = [
 ];
 
 /// Circles of folders that are left, likewise.
-const KNOWN_OF_FOLDERS: [(&str, &[&str]); 4] = [
-    ("board-kit", &["motors", "wheels"]),
+const KNOWN_OF_FOLDERS: [(&str, &[&str]); 2] = [
     ("brain", &["belief", "body", "hosted", "skills"]),
-    ("brain", &["skills::wheels::get_ball", "skills::wheels::place_ball"]),
     (
         "host",
         &[

@@ -106,7 +106,7 @@ fn test_names(text: &str) -> Vec<(usize, &str)> {
 /// Closures that a `let` gives a name, in the product.
 const NAMED_CLOSURES_MAX: usize = 714;
 /// Constants of the product whose name is one of [`BARE_WORDS`].
-const BARE_CONSTANTS_MAX: usize = 60;
+const BARE_CONSTANTS_MAX: usize = 12;
 /// Test names longer than [`TEST_NAME_LEN_MAX`].
 const LONG_TEST_NAMES_MAX: usize = 0;
 /// Characters of a test's name that are read at a glance.

@@ -21,14 +21,14 @@ async fn main(spawner: embassy_executor::Spawner) {
     use runtime::ports::Kicker as _;
 
     /// Voltage to charge to, V: below extra-low voltage's 60 V.
-    const ENOUGH: f32 = 50.0;
+    const CHARGED_V: f32 = 50.0;
     const EMPTY: f32 = 30.0;
 
     let parts = board_stm32::start();
     let (mut kicker, mut analog) = (drivers::kicker(parts.kicker), drivers::analog(parts.analog));
     for round in 1..=3_u8 {
         let begun = Instant::now();
-        while analog.capacitor() < ENOUGH && begun.elapsed() < Duration::from_secs(2) {
+        while analog.capacitor() < CHARGED_V && begun.elapsed() < Duration::from_secs(2) {
             kicker.act(KickerAct::Charge).await;
         }
         let took = begun.elapsed().as_millis();

@@ -51,7 +51,7 @@ impl BallFilter {
     /// A ball between the legs.
     pub fn held(deceleration: f32) -> Self {
         let at = Point::new(HOLD_DISTANCE, 0.0);
-        Self { at_rest: 1.0, ..Self::seen(at, HELD, deceleration) }
+        Self { at_rest: 1.0, ..Self::seen(at, HELD_BALL_VARIANCE, deceleration) }
     }
 
     /// A kick, a release or a push is known: it may roll now.
@@ -86,7 +86,7 @@ impl BallFilter {
 
     /// Carries on over `dt` s in which the body moved by its odometry.
     pub fn predict(&mut self, odometry: Twist<Body>, dt: f32) {
-        let stops = if self.roll.velocity.norm() < SLOW { STOPS_SLOW } else { STOPS };
+        let stops = if self.roll.velocity.norm() < SLOW_BALL_SPEED { STOP_RATE_SLOW } else { STOP_RATE };
         self.mix(1.0 - STARTS * dt, stops * dt);
         let turn = Angle::new(-odometry.angular * dt);
         let carried = |place: Vector<Body>| (place - odometry.linear * dt).rotated(turn);
@@ -119,7 +119,7 @@ impl BallFilter {
         let exponent = 0.5 * (at_rest.dot(at_rest) / s_rest - rolling.dot(rolling) / s_roll);
         let ratio = s_rest / s_roll * math::exp(exponent.clamp(-EXPONENT, EXPONENT));
         let odds = (1.0 - self.at_rest) * ratio;
-        self.at_rest = (self.at_rest / (self.at_rest + odds)).clamp(NEVER, 1.0 - NEVER);
+        self.at_rest = (self.at_rest / (self.at_rest + odds)).clamp(PROBABILITY_MIN, 1.0 - PROBABILITY_MIN);
         // Errors that last over sights do not average out: as if each sight were so much worse.
         let gain = self.rest.variance / (self.rest.variance + variance + lasting);
         self.rest.place += at_rest * gain;
@@ -138,8 +138,8 @@ impl BallFilter {
     fn mix(&mut self, stays: f32, stops: f32) {
         let (rest, roll) = (self.at_rest, 1.0 - self.at_rest);
         let (to_rest, to_roll) = (rest * stays + roll * stops, rest * (1.0 - stays) + roll * (1.0 - stops));
-        let from_roll = roll * stops / to_rest.max(NEVER);
-        let from_rest = rest * (1.0 - stays) / to_roll.max(NEVER);
+        let from_roll = roll * stops / to_rest.max(PROBABILITY_MIN);
+        let from_rest = rest * (1.0 - stays) / to_roll.max(PROBABILITY_MIN);
         let off = self.roll.place - self.rest.place;
         let (apart, velocity) = (0.5 * off.dot(off), self.roll.velocity);
         let (resting, rolling) = (self.rest, self.roll);
@@ -162,7 +162,7 @@ fn blend(one: f32, other: f32, share: f32) -> f32 {
 }
 
 /// Variance of a held ball's place, m²: 1 cm.
-const HELD: f32 = 1e-4;
+const HELD_BALL_VARIANCE: f32 = 1e-4;
 /// Variance of an axis of the velocity of a ball that was just kicked, m²/s²: 0.7 m/s, a kick of 0.8 m; the
 /// hardest leaves with 1.2 m/s.
 const KICKED: f32 = 0.5;
@@ -171,16 +171,16 @@ const ROLLS_WHEN_RELEASED: f32 = 0.8;
 /// A resting ball starts to roll, 1/s: once in 5 s a robot kicks it.
 const STARTS: f32 = 0.2;
 /// A rolling ball stops at once, 1/s: in a robot's legs.
-const STOPS: f32 = 0.3;
-/// The same below [`SLOW`], 1/s.
-const STOPS_SLOW: f32 = 4.0;
+const STOP_RATE: f32 = 0.3;
+/// The same below [`SLOW_BALL_SPEED`], 1/s.
+const STOP_RATE_SLOW: f32 = 4.0;
 /// A ball that slow stops within a third of a second, m/s.
-const SLOW: f32 = 0.12;
+const SLOW_BALL_SPEED: f32 = 0.12;
 /// Variance of an axis of the velocity that a rolling ball gains, m²/s³: the field surface's unevenness, 0.1
 /// m/s in a second; an estimate.
 const ROLLING: f32 = 0.01;
 /// No model is ever excluded.
-const NEVER: f32 = 1e-3;
+const PROBABILITY_MIN: f32 = 1e-3;
 /// Bound of the exponent of a ratio of likelihoods.
 const EXPONENT: f32 = 30.0;
 

@@ -25,7 +25,7 @@ pub const SWAY: f32 = 2.0 * PI / 180.0;
 /// Correlation time of the sway, s.
 pub const SWAY_TIME: f32 = 0.3;
 /// Slower than this a robot stands, m/s and rad/s.
-pub const STANDS: f32 = 0.02;
+pub const STANDSTILL_SPEED: f32 = 0.02;
 /// The pose at kick-off: m and rad (5°).
 pub const PLACING: f32 = 0.05;
 /// Its heading, rad.

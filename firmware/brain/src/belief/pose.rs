@@ -87,7 +87,8 @@ impl PoseFilter {
         let turned = odometry.angular * dt;
         self.pose.position += moved;
         self.pose.heading = self.pose.heading + Angle::new(turned);
-        let walks = odometry.linear.norm() > model::STANDS || odometry.angular.abs() > model::STANDS;
+        let walks = odometry.linear.norm() > model::STANDSTILL_SPEED
+            || odometry.angular.abs() > model::STANDSTILL_SPEED;
         self.amplitude = model::JOINT + if walks { model::SWAY } else { 0.0 };
         let keep = math::exp(-dt / model::SWAY_TIME);
         self.sway *= keep;
@@ -182,7 +183,7 @@ impl PoseFilter {
             }
         }
         // Rounding must not make a variance negative.
-        for (i, least) in LEAST.into_iter().enumerate() {
+        for (i, least) in VARIANCE_MIN.into_iter().enumerate() {
             p[i][i] = p[i][i].max(least);
         }
         true
@@ -244,7 +245,7 @@ const ANYWHERE: f32 = 2.7;
 /// A landmark is no nearer, m: a body's radius beside its own.
 const NEAREST: f32 = 0.15;
 /// Least variances: (1 mm)², (0.06°)², (1 %)².
-const LEAST: [f32; N] = [1e-6, 1e-6, 1e-6, 1e-4];
+const VARIANCE_MIN: [f32; N] = [1e-6, 1e-6, 1e-6, 1e-4];
 
 #[cfg(test)]
 mod tests;

@@ -115,7 +115,9 @@ impl Belief {
     pub(crate) fn dispute(&mut self, now: Instant) {
         let both = self.ball.is_some_and(|ball| {
             let opponent = self.nearest_opponent(ball.position).is_some_and(|(_, off)| off < AT_BALL);
-            opponent && self.pose.position.distance(ball.position) < AT_BALL && ball.velocity.norm() < SLOW
+            opponent
+                && self.pose.position.distance(ball.position) < AT_BALL
+                && ball.velocity.norm() < STUCK_SPEED_MAX
         });
         self.handling.disputed = both.then_some(self.handling.disputed.unwrap_or(now));
         self.handling.dispute = self.handling.disputed.map_or(0.0, |since| now.since(since).as_secs_f32());
@@ -157,7 +159,7 @@ fn rolling(position: Point<Field>, velocity: Vector<Field>, field: &FieldSpec) -
     let offset = rest - position;
     // The share of the path that stays between two lines; 1 for a ball that is outside already.
     let share = |at: f32, by: f32, line: f32| {
-        let (line, at) = (line + BEYOND, if by < 0.0 { -at } else { at });
+        let (line, at) = (line + BEYOND_LINES_M, if by < 0.0 { -at } else { at });
         if at < line && at + by.abs() > line { (line - at) / by.abs() } else { 1.0 }
     };
     let inside = share(position.x(), offset.x(), 0.5 * field.length).min(share(
@@ -175,13 +177,13 @@ fn is_at_dribbler(pose: Pose<Field>, ball: Point<Field>) -> bool {
 }
 
 /// The ball's path is cut this far beyond the lines, m: a ball on the line is still in the field.
-const BEYOND: f32 = 0.1;
+const BEYOND_LINES_M: f32 = 0.1;
 /// The break-beam sensor may miss the ball for at most this time: a few turns of the ball on the roller.
 const BRIDGED: Duration = Duration::millis(60);
 /// A robot whose centre is this near the ball is at it, m: half a body more than where it touches.
 const AT_BALL: f32 = 0.2;
 /// A faster ball is not stuck between two robots, m/s.
-const SLOW: f32 = 0.5;
+const STUCK_SPEED_MAX: f32 = 0.5;
 /// A gap between ball and dribbler opening that counts as visible by the rules, m.
 const VISIBLE_GAP: f32 = 0.05;
 /// How far before the roller the host may show a ball that is held, m: noise, and 30 ms of its delay.

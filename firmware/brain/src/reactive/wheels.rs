@@ -101,9 +101,9 @@ fn is_attacker(
     if belief.holds_ball {
         return true;
     }
-    let soon = ball.position + (ball.rest - ball.position).clamped(ball.velocity.norm() * AHEAD);
+    let soon = ball.position + (ball.rest - ball.position).clamped(ball.velocity.norm() * PREDICTION_S);
     let far = |from: Point<Field>, role: Role| {
-        from.distance(soon) - if role == Role::Attacker { KEEPS } else { 0.0 }
+        from.distance(soon) - if role == Role::Attacker { ATTACKER_BONUS_M } else { 0.0 }
     };
     let mine = far(belief.pose.position, role);
     teammates.present(now).all(|(id, teammate)| {
@@ -134,7 +134,11 @@ fn place(
     let [along, across] = offsets[before % offsets.len()];
     let farthest = 0.5 * field.length - field.penalty_depth - BEFORE_AREA;
     let x = math::clamp(sign * ball.rest.x() + along, -farthest, farthest) * sign;
-    let y = math::clamp(ball.rest.y() + across, INSIDE - 0.5 * field.width, 0.5 * field.width - INSIDE);
+    let y = math::clamp(
+        ball.rest.y() + across,
+        SIDE_LINE_MARGIN_M - 0.5 * field.width,
+        0.5 * field.width - SIDE_LINE_MARGIN_M,
+    );
     Point::new(x, y)
 }
 
@@ -159,13 +163,13 @@ const CARRIES: f32 = 0.55;
 /// Nearer to the goal's centre carrying on has no benefit, m.
 const TOO_NEAR: f32 = 1.8;
 /// The robot that goes for the ball keeps it unless another is nearer by this, m.
-const KEEPS: f32 = 0.3;
+const ATTACKER_BONUS_M: f32 = 0.3;
 /// Prediction time for the position of a rolling ball at which a robot arrives, s.
-const AHEAD: f32 = 0.6;
+const PREDICTION_S: f32 = 0.6;
 /// Places keep this far before the area, m.
 const BEFORE_AREA: f32 = 0.5;
 /// And this far within the side lines, m.
-const INSIDE: f32 = 0.4;
+const SIDE_LINE_MARGIN_M: f32 = 0.4;
 
 #[cfg(test)]
 mod tests {

@@ -32,7 +32,7 @@ pub fn reactive_shoots_sooner(scene: &ActionScene<'_>) -> bool {
     };
     let duel = if scene.belief.opponents.iter().any(stands_in_it) { DUEL } else { 0.0 };
     let alone = nearest / scene.body.spec().speed + until_shot(scene, ball) + duel;
-    alone + MARGIN < gameplay_until_shot(scene)
+    alone + REACTIVE_LEAD_MIN_S < gameplay_until_shot(scene)
 }
 
 /// Expected seconds until the gameplay's shot, or until the shot that could follow from its final ball
@@ -74,7 +74,7 @@ fn until_shot(scene: &ActionScene<'_>, ball: Point<Field>) -> f32 {
 /// m.
 const IN_REACH: f32 = 2.15;
 /// Least lead of the reactive behaviour, s: the accuracy of a gameplay's estimate.
-const MARGIN: f32 = 1.0;
+const REACTIVE_LEAD_MIN_S: f32 = 1.0;
 /// An opponent this far ahead of the ball, and this far beside its path to the goal, will dispute it, m: what
 /// it walks in 3 s.
 const DUEL_AHEAD: f32 = 1.0;

@@ -50,18 +50,18 @@ fn before_touch(scene: &ActionScene<'_>, settings: &RetrievalSettings) -> Option
         let _room = opponents.push(PointMm::from(*opponent));
     }
     casebase::blocked_leg(&scene.case, scene.base, scene.ball_used(), &opponents, settings)
-        .filter(|blocked| blocked.inside_mm >= SURE * 1000.0 * scene.belief.opponent_sigma())
+        .filter(|blocked| blocked.inside_mm >= CERTAIN_SIGMAS * 1000.0 * scene.belief.opponent_sigma())
         .map(|_| AbortReason::PathBlocked)
 }
 
-/// Whether a ball whose estimate lies outside of the case's scope may lie inside: within [`SURE`] deviations.
+/// Whether a ball whose estimate lies outside of the case's scope may lie inside: within [`CERTAIN_SIGMAS`] deviations.
 fn may_be_in_scope(scene: &ActionScene<'_>, ball: PointMm) -> bool {
     let sigma = if cfg!(feature = "legged") { scene.belief.ball_sigma } else { 0.0 };
     if sigma <= 0.0 {
         return false;
     }
     let [x, y] = scene.case.ball().minus(ball).to_f32();
-    let nearer = Vector::<Field>::new(x, y).clamped(SURE * 1000.0 * sigma);
+    let nearer = Vector::<Field>::new(x, y).clamped(CERTAIN_SIGMAS * 1000.0 * sigma);
     scene.case.ball_in_scope(
         ball.plus(PointMm::new(math::round_to_i32(nearer.x()), math::round_to_i32(nearer.y()))),
     )
@@ -76,7 +76,7 @@ fn after_touch(scene: &ActionScene<'_>) -> Option<AbortReason> {
     if held || !ball.is_at_rest() {
         return None;
     }
-    let stray = STRAY + SURE * scene.belief.ball_sigma;
+    let stray = STRAY + CERTAIN_SIGMAS * scene.belief.ball_sigma;
     let expected = scene.case.legs(scene.ball_used()).into_iter().any(|leg| {
         let path = Segment::new(leg.start(), leg.end());
         path.distance_to(ball.position) < leg.r_max * 0.001 + stray
@@ -89,4 +89,4 @@ fn after_touch(scene: &ActionScene<'_>) -> Option<AbortReason> {
 const STRAY: f32 = 0.3;
 
 /// Standard deviations beyond which a believed position is certain enough to end a gameplay.
-const SURE: f32 = 2.0;
+const CERTAIN_SIGMAS: f32 = 2.0;

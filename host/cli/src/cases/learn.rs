@@ -114,7 +114,7 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
         let (out, shard, seed) = (&args.out, args.shard, args.seed);
         if matches {
             let player = JournalPlayer::open(out, &identity, shard, seed, stopped, &on_trials);
-            let mut player = player.map_err(LearnError::Play)?.with_patience(PATIENCE);
+            let mut player = player.map_err(LearnError::Play)?.with_patience(PLAYER_SILENCE_MAX);
             return learn_matches(files, earlier, &settings, &mut player);
         }
         let player = JournalPlayer::open(out, &identity, shard, seed, stopped, &on_trials);
@@ -139,7 +139,7 @@ const TRIALS: u64 = 300_000;
 /// Scenes of a run with matches by default: some half an hour of a core.
 const SCENES: u64 = 10_000;
 /// Time without a match of a shard after which it counts as absent: several whole matches.
-const PATIENCE: Duration = Duration::from_mins(1);
+const PLAYER_SILENCE_MAX: Duration = Duration::from_mins(1);
 
 /// Refuses a directory in which something else would be overwritten.
 fn check_outputs(args: &LearnArgs, league: &str) -> Result<(), DestinationError> {

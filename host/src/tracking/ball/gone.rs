@@ -44,7 +44,8 @@ const BESIDE_MIN_M: f32 = 0.3;
 const BESIDE_FOR_S: f32 = 1.0;
 /// A blob this near the place of another ball is that ball, m.
 const SAME_PLACE_M: f32 = 0.15;
-/// The place of another ball that is not seen is remembered for this time, s: a robot or a person stands in front of it.
+/// The place of another ball that is not seen is remembered for this time, s: a robot or a person stands in
+/// front of it.
 const PLACE_KEPT_S: f32 = 30.0;
 /// Places remembered.
 const PLACES_MAX: usize = 4;

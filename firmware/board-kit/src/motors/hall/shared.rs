@@ -26,8 +26,8 @@ use rules::RobotSpec;
 use runtime::wheel::WHEELS;
 
 use super::ThreePwm;
+use crate::encoders::EncoderCounts;
 use crate::motors::Bridge;
-use crate::wheels::EncoderCounts;
 
 /// A motor in a static; without a driver it takes no current and reports a fault.
 pub struct HallMotor<P, E, H>(CriticalSectionMutex<RefCell<Option<ThreePwm<P, E, H>>>>);

@@ -2,9 +2,9 @@
 
 use super::PhaseOutput::{Floating, High, Low};
 use super::*;
+use crate::encoders::EncoderCounts;
 use crate::motors::testing::{Pin, Pwm};
 use crate::motors::{Bridges, MotorDrivers};
-use crate::wheels::EncoderCounts;
 use std::f64::consts::{PI, TAU};
 
 /// A over B, B over C, C over A; then who is highest and who is lowest, worked out by hand.

@@ -148,8 +148,11 @@ impl Reference {
 
     fn predict(&mut self) {
         let roll = &self.state[1];
-        let stops =
-            f64::from(if roll[0][1].hypot(roll[1][1]) < f64::from(SLOW) { STOPS_SLOW } else { STOPS }) * DT;
+        let stops = f64::from(if roll[0][1].hypot(roll[1][1]) < f64::from(SLOW_BALL_SPEED) {
+            STOP_RATE_SLOW
+        } else {
+            STOP_RATE
+        }) * DT;
         let starts = f64::from(STARTS) * DT;
         let chain = [[1.0 - starts, starts], [stops, 1.0 - stops]];
         let next: [f64; 2] = core::array::from_fn(|j| (0..2).map(|i| chain[i][j] * self.weight[i]).sum());
@@ -229,7 +232,8 @@ impl Reference {
             }
         }
         let sum: f64 = (0..2).map(|i| self.weight[i] * likelihood[i]).sum();
-        let rest = (self.weight[0] * likelihood[0] / sum).clamp(f64::from(NEVER), 1.0 - f64::from(NEVER));
+        let rest = (self.weight[0] * likelihood[0] / sum)
+            .clamp(f64::from(PROBABILITY_MIN), 1.0 - f64::from(PROBABILITY_MIN));
         self.weight = [rest, 1.0 - rest];
     }
 }
@@ -291,7 +295,9 @@ fn its_variance_is_that_of_its_errors() {
             let mut filter = BallFilter::seen(seen(at, &mut random), variance as f32, DECELERATION);
             for _ in 0..seconds * 25 {
                 let speed = v[0].hypot(v[1]);
-                let stops = f64::from(if speed < f64::from(SLOW) { STOPS_SLOW } else { STOPS }) * DT;
+                let stops =
+                    f64::from(if speed < f64::from(SLOW_BALL_SPEED) { STOP_RATE_SLOW } else { STOP_RATE })
+                        * DT;
                 match speed > 0.0 {
                     true if random.share() < stops => v = [0.0; 2],
                     false if random.share() < f64::from(STARTS) * DT => v = kick(&mut random),

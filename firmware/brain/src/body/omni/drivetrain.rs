@@ -58,7 +58,7 @@ impl Drivetrain {
         if (self.angular - belief.angular).abs() > ASTRAY_TURN {
             self.angular = belief.angular;
         }
-        let keeps = 1.0 - step * FORGETS;
+        let keeps = 1.0 - step * FORGETTING_RATE;
         self.moves_on = (self.moves_on + (self.velocity - belief.velocity) * step) * keeps;
         self.turns_on = (self.turns_on + (self.angular - belief.angular) * step) * keeps;
         let under_way = self.under_way.take();
@@ -126,7 +126,7 @@ impl Drivetrain {
     fn follow(&mut self, belief: &Belief, step: f32, drive: &Drive) -> Wanted {
         let from = belief.pose.position + self.moves_on;
         let rests = self.velocity.norm() < THERE_SPEED;
-        if rests && from.distance(drive.to) < THERE && !is_moved_by_the_rules(belief.game.phase) {
+        if rests && from.distance(drive.to) < AT_PLACE && !is_moved_by_the_rules(belief.game.phase) {
             // No plan is needed.
             self.under_way = Some(CurrentPath { drive: *drive, towards: None, winds: false });
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
@@ -153,7 +153,7 @@ impl Drivetrain {
             towards: is_free.then(|| path.motion.to()),
             winds: is_free && path.verdict != RouteVerdict::Direct,
         });
-        let there = rests && from.distance(path.goal) < THERE;
+        let there = rests && from.distance(path.goal) < AT_PLACE;
         // While we place the ball the others keep off, and the step has no time for it.
         let velocity = match path.next.velocity {
             _ if there => Vector::default(),
@@ -218,7 +218,7 @@ fn short_of_bodies(belief: &Belief, mut velocity: Vector<Field>) -> Vector<Field
         let along = off * (1.0 / distance);
         let (own, theirs) = (velocity.dot(along), other.velocity.dot(along));
         let closing = own - theirs;
-        let gap = distance - 2.0 * ROBOT_RADIUS - LATE * closing;
+        let gap = distance - 2.0 * ROBOT_RADIUS - CONTROL_DELAY_S * closing;
         let most = TOUCHES_AT + math::sqrt(2.0 * BOTH_BRAKE * math::max(gap, 0.0));
         // Who comes at a robot that stands has to slow down itself.
         let kept = math::max(most + theirs, 0.0);
@@ -261,7 +261,7 @@ const NOTICES: f32 = 1.0;
 /// Centres that pass this far apart do not touch, m: two radii, and what positions and directions err by.
 const PASSES: f32 = 2.0 * ROBOT_RADIUS + 0.05;
 /// Time until an order for the wheels shows, s: cameras, radio and wheels are 0.05 to 0.15 s late.
-const LATE: f32 = 0.12;
+const CONTROL_DELAY_S: f32 = 0.12;
 /// Bodies touch no faster than this, m/s: a crash is a foul above 1.5 (rules), less the errors of velocities.
 const TOUCHES_AT: f32 = 1.0;
 /// Deceleration down to that, m/s²: what weak brakes do (estimate).
@@ -306,7 +306,7 @@ fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
         LIMITS
     };
     let limits = capped(limits, belief);
-    let stop = if belief.game.phase == Phase::Stop { STOP_SPEED - SLACK } else { f32::INFINITY };
+    let stop = if belief.game.phase == Phase::Stop { STOP_SPEED - STOP_SPEED_SLACK } else { f32::INFINITY };
     limits.slowed_to(drive.speed.min(stop))
 }
 
@@ -335,9 +335,9 @@ const PLACING_TURN: TurnLimits = TurnLimits::of(&RobotSpec::OURS.turn_placing);
 /// oscillates.
 const SETTLES: f32 = 5.0;
 /// Below the governor's limit in STOP, m/s: the governor need not intervene.
-const SLACK: f32 = 0.1;
+const STOP_SPEED_SLACK: f32 = 0.1;
 /// Position error, m, and speed, m/s, below which a robot stands at its place: the vision's noise.
-const THERE: f32 = 0.004;
+const AT_PLACE: f32 = 0.004;
 const THERE_SPEED: f32 = 0.05;
 /// Heading error, rad, and turning rate, rad/s, below which the robot faces its target.
 const FACED: f32 = 0.01;
@@ -347,7 +347,7 @@ const ASTRAY: f32 = 0.6;
 /// The same for turning, rad/s.
 const ASTRAY_TURN: f32 = 3.0;
 /// An order that was never carried out is forgotten in this share a second: wheels follow within a tenth.
-const FORGETS: f32 = 8.0;
+const FORGETTING_RATE: f32 = 8.0;
 /// What is taken for a step, s.
 const STEP_LEAST: f32 = 0.001;
 const STEP_MOST: f32 = 0.03;

@@ -41,7 +41,7 @@ impl Surroundings {
         // A robot at a ball that lies beside an area may be as near as the rules allow.
         let rolls = belief.ball.map_or(0.0, |ball| ball.velocity.norm());
         let at_ball = belief.game.phase == Phase::Run
-            && belief.ball.is_some_and(|ball| rolls < LIES && ball.position.distance(to) < AT_BALL);
+            && belief.ball.is_some_and(|ball| rolls < REST_SPEED_MAX && ball.position.distance(to) < AT_BALL);
         let grown = |region: &Forbidden| {
             let law = match region.why {
                 KeepOutReason::OpponentArea | KeepOutReason::OwnArea if at_ball => LAW_AT_BALL,
@@ -168,7 +168,7 @@ const LEADS: f32 = 0.15;
 /// … at most this, m: the places that hosts order are 0.15 m clear of it.
 const LEADS_MOST: f32 = 0.3;
 /// A slower ball counts as stationary, m/s.
-const LIES: f32 = 0.3;
+const REST_SPEED_MAX: f32 = 0.3;
 /// A robot whose path ends this near the ball lines up behind it, m.
 const AT_BALL: f32 = 0.2;
 /// Distance kept from the edge of the field surface, m.

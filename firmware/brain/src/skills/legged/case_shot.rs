@@ -89,7 +89,7 @@ impl<'b> Holding<'b> {
     /// Worth of a goal with that probability, and of what a miss leaves: before a goalkeeper that ends the
     /// play.
     fn goal(&self, chance: f32) -> f32 {
-        if self.guarded { chance - LOST } else { chance * (1.0 - LOST) }
+        if self.guarded { chance - LOST_BALL_COST } else { chance * (1.0 - LOST_BALL_COST) }
     }
 
     /// Probability that no opponent has taken the ball after `time` s with about that heading: the first
@@ -152,8 +152,8 @@ impl<'b> Holding<'b> {
         let path = Segment::new(from, from + unit * length);
         let field = belief.league().field();
         let goalkeepers = self.guarded && field.in_penalty_area(self.attacked, path.to);
-        if goalkeepers || field.clamp(path.to, INSIDE).distance(path.to) > 0.0 {
-            return -LOST;
+        if goalkeepers || field.clamp(path.to, LINE_MARGIN_M).distance(path.to) > 0.0 {
+            return -LOST_BALL_COST;
         }
         let meets = |opponent: &Point<Field>| {
             let to = *opponent - from;
@@ -194,7 +194,7 @@ pub fn pressed_shot(belief: &Belief, attacked: GoalEnd, time: f32) -> Option<Int
 /// Probability of a goal, as [`shot`] estimates it, at which a shot is worth a lost ball: of the shots
 /// estimated at 0.10 to 0.15 in the paper's scenarios 0.31 came to goal; of the balls that opponents took out
 /// of our legs 0.19 to 0.31 did later.
-const LOST: f32 = FAIR_SHOT;
+const LOST_BALL_COST: f32 = FAIR_SHOT;
 /// A holder is pressed by an opponent that is at the ball within this time, s: a kick's, and a look.
 const PRESSED_FOR: f32 = 1.0;
 /// An opponent whose centre is this near the ball closes its legs on it, m: the grab's reach and a step.
@@ -215,7 +215,7 @@ const PASSES_BY: f32 = 0.24;
 /// Share of grabs that succeed, as bodies of this league do.
 const GRAB_SUCCEEDS: f32 = 0.75;
 /// A kick into free space ends this far within the lines, m.
-const INSIDE: f32 = 0.3;
+const LINE_MARGIN_M: f32 = 0.3;
 /// What a metre of ground lost costs of a good shot: 5 m from goal to goal are worth it all; an estimate.
 const GROUND: f32 = 0.06;
 

@@ -38,7 +38,7 @@ pub fn get_ball(belief: &Belief, exit_heading: Option<Angle>) -> Step {
     }
     // No slowing down before the ball is in reach: the walk would end beyond that.
     let to = interception_point - Vector::polar(WALK_UP_TO, direct);
-    let face = if distance < NEAR { pose.position.direction_to(ball.position) } else { direct };
+    let face = if distance < NEAR_BALL_M { pose.position.direction_to(ball.position) } else { direct };
     Step::Running(Intent::Walk { to, face, avoid_ball: false })
 }
 
@@ -84,7 +84,7 @@ const STAND_OFF: f32 = 0.14;
 /// End of a walk straight to the ball, before its centre, m: less than the grab's reach.
 const WALK_UP_TO: f32 = 0.08;
 /// Within this distance only the time to the ball counts, m.
-const NEAR: f32 = 0.5;
+const NEAR_BALL_M: f32 = 0.5;
 /// Least gain of standing behind the ball, s: the steps that a robot needs to stand still there.
 const WORTH_TURNING: f32 = 0.3;
 /// Distance from the ball at which a robot walks around it, m.

@@ -32,11 +32,11 @@ pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
 
 /// Point at which an approaching ball crosses the stretch.
 fn coming(ball: &BelievedBall, stretch: Segment<Field>) -> Option<Point<Field>> {
-    if ball.velocity.norm() < COMING {
+    if ball.velocity.norm() < APPROACH_SPEED_MIN {
         return None;
     }
     let ball_path = Segment::new(ball.position, ball.rest);
-    crossing(ball_path, stretch, BESIDE)
+    crossing(ball_path, stretch, BLOCKED_BESIDE_M)
 }
 
 /// The point with the most slack on the ball's path to `crossing`.
@@ -70,7 +70,11 @@ fn threatened(belief: &Belief, ball: &BelievedBall, stretch: Segment<Field>) -> 
         |pose: Pose<Field>| (pose.position.direction_to(ball.position) - pose.heading).abs() < LOOKS_AT;
     let holder = belief.others.iter().filter(|other| other.side == Side::Theirs).find(|other| {
         let distance = other.pose.position.distance(ball.position);
-        if penalty { distance < LINES_UP && looks_at_it(other.pose) } else { distance < HOLDS }
+        if penalty {
+            distance < LINES_UP && looks_at_it(other.pose)
+        } else {
+            distance < POSSESSION_DISTANCE_M
+        }
     });
     let shot = holder.and_then(|other| {
         let along = geometry::Vector::polar(FAR_BACK, other.pose.heading);
@@ -96,11 +100,11 @@ fn crossing(ball_path: Segment<Field>, stretch: Segment<Field>, beyond: f32) -> 
 }
 
 /// A faster ball approaches, m/s.
-const COMING: f32 = 0.3;
+const APPROACH_SPEED_MIN: f32 = 0.3;
 /// A ball that passes the stretch's ends within this is blocked there, m: a robot's width.
-const BESIDE: f32 = 2.0 * ROBOT_RADIUS;
+const BLOCKED_BESIDE_M: f32 = 2.0 * ROBOT_RADIUS;
 /// An opponent this near the ball has it, m.
-const HOLDS: f32 = 0.15;
+const POSSESSION_DISTANCE_M: f32 = 0.15;
 /// The kicker of a penalty this near the ball lines up for its shot, m; and faces it within this, rad.
 const LINES_UP: f32 = 0.6;
 const LOOKS_AT: f32 = 0.3;

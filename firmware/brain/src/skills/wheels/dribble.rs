@@ -53,7 +53,7 @@ pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
 /// [`kick_held`] tolerates more aiming error from then on, and after `LASTS` the robot leaves the ball.
 pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
     let held = belief.held();
-    if belief.disputed() > TURNS && belief.holds_ball {
+    if belief.disputed() > DISPUTED_BEFORE_TURN_S && belief.holds_ball {
         // Both turn in the same direction: their fronts part, and the ball goes with one of them, which kicks
         // it a little farther round.
         let aside = belief.pose.position + Vector::polar(AFAR, belief.pose.heading + Angle::new(TURN));
@@ -92,7 +92,7 @@ pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
         return Drive { speed: drive.speed.min(slow), ..drive }.into();
     }
     let back = belief.pose.position - Vector::polar(STEP_BACK, belief.pose.heading);
-    Drive { speed: AWAY, ..Drive::bold(back, belief.pose.heading) }.into()
+    Drive { speed: STEP_BACK_SPEED, ..Drive::bold(back, belief.pose.heading) }.into()
 }
 
 /// Two robots that press the ball against each other block each other: the first touch is a kick, unless the
@@ -126,7 +126,7 @@ const LASTS: f32 = 3.0;
 /// takes.
 const DISPUTES: f32 = 0.8;
 /// After this time it turns away with the ball, s: two or three kicks.
-const TURNS: f32 = 1.3;
+const DISPUTED_BEFORE_TURN_S: f32 = 1.3;
 /// It kicks this much farther round than where the ball came free, rad: past the other robot.
 const TURN: f32 = 0.8;
 /// Speed of that kick, m/s: out of reach, not out of the field.
@@ -149,7 +149,7 @@ const CRAWL: f32 = 0.15;
 /// Distance of the step back, m.
 const STEP_BACK: f32 = 0.2;
 /// Speed of the step back, m/s.
-const AWAY: f32 = 0.8;
+const STEP_BACK_SPEED: f32 = 0.8;
 /// Speed at which it backs off a ball that cameras may not see for it, m/s.
 const REVEALS: f32 = 0.3;
 /// Nearer than this it keeps its heading, m.

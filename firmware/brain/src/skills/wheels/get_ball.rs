@@ -13,7 +13,7 @@ use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, limits_without_ball};
 use crate::skills::Step;
-use crate::skills::wheels::place_ball::wall;
+use crate::skills::wheels::wall::wall;
 
 /// Where a robot stands on the path to a ball at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,7 @@ pub fn approach(belief: &Belief, ball: &BelievedBall, face: Angle, speed: f32) -
     let off = (face - belief.pose.heading).abs();
     // The farther back, the wider the approach; at the ball itself a finger's breadth.
     let room = along - BALL_AT;
-    let width = BESIDE + WIDENS * room.clamp(0.0, 0.3);
+    let width = LINE_HALF_WIDTH_M + WIDENS * room.clamp(0.0, 0.3);
     let drifts = belief.is_placing() && ahead.cross(belief.velocity).abs() > DRIFTS;
     if along > 0.0 && room < GO_IN_FROM && beside.abs() < width && off < ALIGNED && !drifts {
         let to = ball.position - ahead * (BALL_AT - PRESS);
@@ -213,7 +213,7 @@ const PLACING_STAND_OFF: f32 = 0.1;
 /// How deep it presses into where the ball lies, m: until it touches for certain.
 const PRESS: f32 = 0.02;
 /// Beside the line over the ball: half of the opening's half width, m.
-const BESIDE: f32 = 0.015;
+const LINE_HALF_WIDTH_M: f32 = 0.015;
 /// So far beside it a robot before the ball steps aside to it, m.
 const SIDESTEPS: f32 = 0.1;
 /// Faster across than this it would come beside the ball, m/s.

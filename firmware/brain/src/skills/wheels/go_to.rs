@@ -18,14 +18,14 @@ pub fn keep_off(belief: &Belief) -> Intent {
     let face = me.direction_to(ball.position);
     let away =
         (me - ball.position).unit().unwrap_or(Vector::polar(1.0, belief.pose.heading + Angle::HALF_TURN));
-    if me.distance(ball.position) > OFF {
+    if me.distance(ball.position) > KEEP_OFF_M {
         return Intent::Stand { face: Some(face) };
     }
-    Drive::avoiding(ball.position + away * (OFF + 0.1), face).into()
+    Drive::avoiding(ball.position + away * (KEEP_OFF_M + 0.1), face).into()
 }
 
 /// At this distance from the ball a robot does not touch it by accident, m.
-const OFF: f32 = 0.3;
+const KEEP_OFF_M: f32 = 0.3;
 
 #[cfg(test)]
 mod tests {

@@ -36,7 +36,7 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     // turned.
     let behind = ball.position - Vector::polar(LINES_UP, face);
     let blocked = belief.nearest_opponent(behind).is_some_and(|(_, distance)| distance < BODIES);
-    if !once && (ball.velocity.norm() > LIES || blocked) {
+    if !once && (ball.velocity.norm() > REST_SPEED_MAX || blocked) {
         return match get_ball(belief, Some(face)) {
             Step::Running(intent) => intent,
             Step::Done => kick_held(belief, at, OmniKick::None),
@@ -46,7 +46,7 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
         Approach::In(drive) if ready => {
             let aimed = (face - belief.pose.heading).abs() < tolerance(ball.position.distance(at))
                 && is_still(belief, 1.0);
-            if aimed || ball.position.distance(belief.pose.position) > BALL_AT + CLOSE {
+            if aimed || ball.position.distance(belief.pose.position) > BALL_AT + FACING_DISTANCE_M {
                 Drive { kick: if aimed { kick } else { OmniKick::None }, ..drive }.into()
             } else {
                 // Too near to touch the ball while it faces elsewhere: turn on the spot.
@@ -98,7 +98,7 @@ fn sideways(belief: &Belief) -> f32 {
 }
 
 /// A slower ball counts as stationary, m/s.
-const LIES: f32 = 0.25;
+const REST_SPEED_MAX: f32 = 0.25;
 /// Distance from a ball to the centre of a robot that lines up behind it, m (`get_ball`); and two bodies side
 /// by side.
 const LINES_UP: f32 = 0.165;
@@ -106,7 +106,7 @@ const BODIES: f32 = 2.0 * ROBOT_RADIUS;
 /// How fast a robot goes in for a kick, m/s.
 const GO_IN: f32 = 0.35;
 /// Within this distance of the ball it must face the target before it continues, m.
-const CLOSE: f32 = 0.02;
+const FACING_DISTANCE_M: f32 = 0.02;
 /// Between front and ball while the robot waits for the order to kick, m.
 const WAIT_OFF: f32 = 0.04;
 /// A pass arrives with this speed, m/s: Thunderbots' passes are received at 2 and below, and one of 1.3 that

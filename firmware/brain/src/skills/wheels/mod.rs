@@ -14,6 +14,7 @@ mod release;
 mod shoot;
 #[cfg(test)]
 pub(crate) mod testing;
+mod wall;
 
 pub use block::block;
 pub use dribble::{carry_to, dribble, let_go_in_time};

@@ -16,8 +16,8 @@ use rules::limits::ROBOT_RADIUS;
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
-pub(super) use methods::wall;
-use methods::{NEAR_ENOUGH, OffWall, fetch, kick_off, pull, push, strays};
+use crate::skills::wheels::wall::wall;
+use methods::{OffWall, PLACED_M, fetch, kick_off, pull, push, strays};
 
 /// How far a placement has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -134,7 +134,7 @@ impl Placement {
         let share = if felt.since(self.since) < AT_ONCE { LOSES_AT_ONCE } else { LOSES };
         self.stays |= share < LOSES && self.grip <= GRIP_LEAST;
         self.grip = (self.grip * share).max(GRIP_LEAST);
-        if speed > FAST {
+        if speed > PULL_SPEED_KEPT {
             self.pace = SLOWER * speed;
         }
         self.tries = (self.tries + 1) & 6;
@@ -172,7 +172,7 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
         Placing::Revealing { facing } => {
             let back = ball.position - Vector::polar(BALL_AT + REVEALS, facing);
             // At once after a kick: it comes back off the wall, and shall not meet the robot.
-            let speed = if belief.kicker_ready { LEAVE } else { AWAY };
+            let speed = if belief.kicker_ready { LEAVE } else { LEAVE_SPEED_AFTER_KICK };
             Drive { speed, ..Drive::bold(back, facing) }.into()
         }
         Placing::Pulling { out, loose, .. } => {
@@ -194,7 +194,7 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
             Drive { dribbler, ..Drive::bold(me, heading) }.into()
         }
         Placing::Leaving { facing } => {
-            let straight = ball.position - Vector::polar(OFF, facing);
+            let straight = ball.position - Vector::polar(KEEP_OFF_M, facing);
             let room = belief.league().field().surface().grown(-ROBOT_RADIUS);
             if room.contains(straight) {
                 return Drive { speed: LEAVE, ..Drive::bold(straight, facing) }.into();
@@ -205,7 +205,7 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
                 let back = ball.position - Vector::polar(BALL_AT + 2.0 * STEP_BACK, facing);
                 return Drive { speed: LEAVE, ..Drive::bold(back, facing) }.into();
             }
-            let inwards = (Point::new(0.0, 0.0) - ball.position).clamped(OFF);
+            let inwards = (Point::new(0.0, 0.0) - ball.position).clamped(KEEP_OFF_M);
             Drive::avoiding(ball.position + inwards, facing).into()
         }
         Placing::Done => Intent::Stand { face: Some(me.direction_to(ball.position)) },
@@ -245,7 +245,7 @@ fn next(
             }
         }
         // That failed: try another method.
-        Placing::Fetching if clear < NEAR && slow && age > FETCHES => {
+        Placing::Fetching if clear < FETCHING_DISTANCE_M && slow && age > FETCHES => {
             placement.since = now;
             placement.other_side ^= true;
             placement.tries = (placement.tries + 1) & 7;
@@ -259,17 +259,18 @@ fn next(
             Placing::Revealing { facing: heading }
         }
         Placing::Revealing { .. } if clear > REVEALS - GAP || age > REVEALED => Placing::Fetching,
-        Placing::Fetching if off < NEAR_ENOUGH && slow && clear > GAP => {
+        Placing::Fetching if off < PLACED_M && slow && clear > GAP => {
             Placing::Leaving { facing: belief.pose.position.direction_to(ball.position) }
         }
         // It is not at the ball yet.
-        Placing::Fetching if clear > NEAR || !slow => {
+        Placing::Fetching if clear > FETCHING_DISTANCE_M || !slow => {
             placement.since = now;
             Placing::Fetching
         }
         Placing::Pulling { felt, out, loose, lost } => {
             let gone = now.since(felt);
-            let arrived = belief.dribbler_point().distance(at) < THERE && belief.velocity.norm() < AT_REST;
+            let arrived =
+                belief.dribbler_point().distance(at) < ARRIVED_M && belief.velocity.norm() < AT_REST;
             let free = placement.wall(belief, ball, at).is_none();
             if arrived {
                 return Placing::Letting;
@@ -281,7 +282,7 @@ fn next(
             let out = out.filter(|_| !free);
             if belief.contact() {
                 // It has come back to the break-beam sensor, which sees farther than the roller reaches.
-                if loose && belief.velocity.dot(Vector::polar(1.0, heading)) > -SLOW {
+                if loose && belief.velocity.dot(Vector::polar(1.0, heading)) > -PRESSING_SPEED_MAX {
                     placement.since = now;
                 }
                 return Placing::Pulling { felt: now, out, loose: false, lost: false };
@@ -305,11 +306,11 @@ fn next(
         }
         Placing::Letting if age > RUNS_OUT => Placing::Leaving { facing: heading },
         Placing::Leaving { .. } | Placing::Done
-            if off > NEAR_ENOUGH && (slow || off > OFF) && clear > GAP =>
+            if off > PLACED_M && (slow || off > KEEP_OFF_M) && clear > GAP =>
         {
             Placing::Fetching
         }
-        Placing::Leaving { .. } if clear + BALL_AT > OFF - 0.05 => Placing::Done,
+        Placing::Leaving { .. } if clear + BALL_AT > KEEP_OFF_M - 0.05 => Placing::Done,
         same => same,
     }
 }
@@ -328,7 +329,7 @@ const LOSES: f32 = 0.6;
 const LOSES_AT_ONCE: f32 = 0.25;
 const AT_ONCE: Duration = Duration::millis(800);
 /// One lost during a pull at more than this, m/s, came as quickly as it was asked to and no faster: …
-const FAST: f32 = 1.0;
+const PULL_SPEED_KEPT: f32 = 1.0;
 /// … it is pulled with this share of that speed.
 const SLOWER: f32 = 0.8;
 /// How fast a ball is pulled, m/s.
@@ -348,13 +349,13 @@ const EASED: f32 = 0.2;
 /// How fast a robot backs off from it, m/s.
 const LEAVE: f32 = 0.6;
 /// The same after a kick, m/s.
-const AWAY: f32 = 1.5;
+const LEAVE_SPEED_AFTER_KICK: f32 = 1.5;
 /// A slower ball rests, m/s.
 const AT_REST: f32 = 0.06;
 /// So slowly a robot presses on a ball without pushing it off, m/s.
-const SLOW: f32 = 0.15;
+const PRESSING_SPEED_MAX: f32 = 0.15;
 /// Position tolerance of a ball at the dribbler, m.
-const THERE: f32 = 0.03;
+const ARRIVED_M: f32 = 0.03;
 /// Where the ball is shown this near the front, it should be felt, m.
 const AT_FRONT: f32 = 0.04;
 /// It goes so far into where the ball is shown, m: not so far that it is past it; …
@@ -369,7 +370,7 @@ const COMES_ON: f32 = 0.08;
 /// blind.
 const FEELS: Duration = Duration::millis(500);
 /// One that is this near and does not get the ball for this long tries another method, m.
-const NEAR: f32 = 0.4;
+const FETCHING_DISTANCE_M: f32 = 0.4;
 const FETCHES: Duration = Duration::millis(3000);
 /// Distance by which it backs off so that the cameras see the place, m, and the longest time for it.
 const REVEALS: f32 = 0.2;
@@ -400,7 +401,7 @@ const RUNS_OUT: Duration = Duration::millis(200);
 /// So far back a robot may turn and go around the ball without touching it, m.
 const STEP_BACK: f32 = 0.06;
 /// How far off the robot goes, centre to ball, m: 0.5 by the rules, its body, and a margin.
-const OFF: f32 = 0.75;
+const KEEP_OFF_M: f32 = 0.75;
 
 #[cfg(test)]
 mod tests {

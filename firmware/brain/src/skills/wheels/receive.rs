@@ -25,7 +25,7 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
     let Some(ball) = belief.ball else { return Drive::avoiding(at, belief.pose.heading).into() };
     if !comes(belief, &ball, at) {
         // One that has bounced off the front, too: it is not waited for.
-        let slow = ball.velocity.norm() < COMING;
+        let slow = ball.velocity.norm() < APPROACH_SPEED_MIN;
         if slow && ball.position.distance(at) < FETCHED {
             return match get_ball(belief, None) {
                 Step::Running(intent) => intent,
@@ -70,7 +70,9 @@ fn comes(belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> bool {
     let me = belief.pose.position;
     let towards = ball.velocity.dot(at - ball.position) > 0.0 || ball.velocity.dot(me - ball.position) > 0.0;
     let line = Segment::new(ball.position, ball.rest);
-    ball.velocity.norm() > COMING && towards && line.distance_to(at).min(line.distance_to(me)) < REACH
+    ball.velocity.norm() > APPROACH_SPEED_MIN
+        && towards
+        && line.distance_to(at).min(line.distance_to(me)) < REACH
 }
 
 /// The kick that redirects it, and its speed, m/s.
@@ -103,7 +105,7 @@ fn deflection(ball: &BelievedBall, at: Point<Field>, then: Point<Field>, speed: 
 /// A slower ball is stationary, m/s.
 const RESTS: f32 = 0.15;
 /// A faster ball approaches, m/s.
-const COMING: f32 = 0.4;
+const APPROACH_SPEED_MIN: f32 = 0.4;
 /// A pass that ends within this distance is fetched, m.
 const FETCHED: f32 = 1.0;
 /// A ball that passes within this distance can be taken, m.

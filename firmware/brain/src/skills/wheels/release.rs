@@ -37,7 +37,7 @@ fn stays_inside(belief: &Belief, from: Point<Field>) -> f32 {
     if ahead && crosses.abs() < 0.5 * field.goal_width + BESIDE_POST {
         return f32::INFINITY;
     }
-    let room = to_goal_line.min(to_touch_line) - INSIDE;
+    let room = to_goal_line.min(to_touch_line) - REST_MARGIN_M;
     BallModel::default().kick_speed(room.max(ROLLS_AT_LEAST), 0.0)
 }
 
@@ -46,7 +46,7 @@ const PARALLEL: f32 = 1e-3;
 /// Beside a post, m: a shot that misses by less counts as one.
 const BESIDE_POST: f32 = 0.1;
 /// From the line to where the ball rests, m: more than a ball's radius, and kicks scatter.
-const INSIDE: f32 = 0.2;
+const REST_MARGIN_M: f32 = 0.2;
 /// A kick rolls at least this far, m: out of the dribbler's reach.
 const ROLLS_AT_LEAST: f32 = 0.8;
 
@@ -57,7 +57,7 @@ mod tests {
     use crate::skills::wheels::testing::belief;
     use geometry::GoalEnd;
 
-    const FAST: OmniKick = OmniKick::Flat(6.0);
+    const FULL_KICK: OmniKick = OmniKick::Flat(6.0);
 
     /// The kick of a robot of the team that attacks +x, with the ball.
     fn kicked(me: (f32, f32, f32), kick: OmniKick) -> OmniKick {
@@ -71,18 +71,19 @@ mod tests {
     #[test]
     fn a_kick_towards_a_line_rests_before_it_and_a_shot_is_as_fast_as_ever() {
         // From y = 1 m to the touch line at 3 m, less the robot's front and 0.2 m.
-        let OmniKick::Flat(speed) = kicked((0.0, 1.0, 90.0), FAST) else { panic!() };
+        let OmniKick::Flat(speed) = kicked((0.0, 1.0, 90.0), FULL_KICK) else { panic!() };
         let rests =
             BallModel::default().kicked(Point::<Field>::new(0.0, 0.0), Vector::new(speed, 0.0)).rest().x();
-        assert!((rests - (2.0 - BALL_AT - INSIDE)).abs() < 0.02, "{speed} m/s rests after {rests} m");
-        assert_eq!(kicked((2.0, 0.0, 0.0), FAST), FAST, "at their goal");
+        assert!((rests - (2.0 - BALL_AT - REST_MARGIN_M)).abs() < 0.02, "{speed} m/s rests after {rests} m");
+        assert_eq!(kicked((2.0, 0.0, 0.0), FULL_KICK), FULL_KICK, "at their goal");
         assert_eq!(kicked((-3.0, 1.0, 0.0), OmniKick::Flat(2.0)), OmniKick::Flat(2.0), "slow enough");
-        assert_ne!(kicked((-2.0, 0.0, 180.0), FAST), FAST, "at the own goal");
+        assert_ne!(kicked((-2.0, 0.0, 180.0), FULL_KICK), FULL_KICK, "at the own goal");
         let mut b = belief((0.0, 1.0, 90.0), (0.0, 1.1));
         b.game.phase = Phase::Run;
-        let ordered = Drive { kick: FAST, armed: true, ..Drive::holding(b.pose.position, b.pose.heading) };
+        let ordered =
+            Drive { kick: FULL_KICK, armed: true, ..Drive::holding(b.pose.position, b.pose.heading) };
         assert_eq!(release(&b, ordered.into(), true), ordered.into(), "the host answers for its speeds");
-        let OmniKick::Flat(least) = kicked((0.0, 2.95, 90.0), FAST) else { panic!() };
+        let OmniKick::Flat(least) = kicked((0.0, 2.95, 90.0), FULL_KICK) else { panic!() };
         assert!(least > 0.9, "{least}: it leaves the dribbler");
     }
 }

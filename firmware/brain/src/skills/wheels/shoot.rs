@@ -47,7 +47,7 @@ pub fn clear_or_shoot(belief: &Belief, attacked: GoalEnd) -> Intent {
     }
     let sign = attacked.sign() as f32;
     let ahead = [1.0_f32, -1.0].map(|side| {
-        let x = (sign * me.x() + CLEARS_AHEAD).min(0.5 * field.length - INSIDE) * sign;
+        let x = (sign * me.x() + CLEARS_AHEAD).min(0.5 * field.length - CLEARING_MARGIN_M) * sign;
         let at = Point::new(x, side * (0.5 * field.width - WING_INSIDE));
         (at, room(belief, me, at))
     });
@@ -94,7 +94,7 @@ const CLEARS_WITH: f32 = 4.0;
 /// As good as stationary, m/s.
 const RESTS: f32 = 0.2;
 /// Distance of a clearing target from the goal line, m.
-const INSIDE: f32 = 1.2;
+const CLEARING_MARGIN_M: f32 = 1.2;
 /// Distance of a clearing target from the side line, m.
 const WING_INSIDE: f32 = 1.1;
 /// More room than this has no benefit, m.

@@ -1,5 +1,4 @@
-//! `methods`: how a ball is approached, pulled, pushed and kicked off walls, and where walls
-//! obstruct.
+//! `methods`: how a ball is approached, pulled, pushed and kicked off walls.
 
 use geometry::{Angle, Field, Point, Vector, math};
 use protocol::robot_io::OmniKick;
@@ -11,6 +10,7 @@ use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
 use crate::skills::wheels::get_ball::{Approach, approach, intercept_ball};
+use crate::skills::wheels::wall::{LINE_UP_BEHIND_M, stands};
 
 /// To the ball from the side of the place, or from behind it; at a wall from the field, at right angles to
 /// it, or as it is kicked.
@@ -66,13 +66,13 @@ pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, placem
     let me = belief.pose.position;
     let gentle = placement.grip;
     // What hardly holds still holds a ball that gets no faster.
-    let speed = if gentle < FOLLOWS { HELD } else { placement.pace };
+    let speed = if gentle < FOLLOWS { HELD_BALL_PULL_SPEED } else { placement.pace };
     let Some(out) = out else {
         // Facing away from the place; at the end the heading stays.
         let far = belief.dribbler_point().distance(at) > KEEPS_HEADING;
         let face = if far { at.direction_to(me) } else { belief.pose.heading };
         // Sideways a roller holds less than towards the robot.
-        let share = if (face - belief.pose.heading).abs() > TURNS { SIDEWAYS } else { 1.0 };
+        let share = if (face - belief.pose.heading).abs() > TURNING_ANGLE_MIN { SIDEWAYS } else { 1.0 };
         let to = at - Vector::polar(BALL_AT, face);
         return Drive { speed, gentle: share * gentle, ..Drive::holding(to, face) };
     };
@@ -86,9 +86,9 @@ pub(super) fn push(belief: &Belief, ball: &BelievedBall, at: Point<Field>, place
     // all.
     let holds = SLOWS.iter().find(|(held, _)| !placement.stays && placement.grip > *held);
     let rolls = holds.map_or(ROLLS, |(_, brakes)| *brakes);
-    let left = ball.position.distance(at) - SHORT - LAG * belief.velocity.norm();
+    let left = ball.position.distance(at) - PUSH_STOPS_SHORT_M - LAG * belief.velocity.norm();
     let speed = math::sqrt(2.0 * rolls * left.max(0.0)).clamp(CREEP, PUSH);
-    let to = ball.position + Vector::polar(AHEAD - BALL_AT, face);
+    let to = ball.position + Vector::polar(PUSH_AIM_AHEAD_M - BALL_AT, face);
     Drive { speed, gentle: PUSHES, ..Drive::holding(to, face) }.into()
 }
 
@@ -96,56 +96,7 @@ pub(super) fn push(belief: &Belief, ball: &BelievedBall, at: Point<Field>, place
 pub(super) fn strays(belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> bool {
     let seen = belief.pose.to_body(ball.position);
     let askew = (ball.position.direction_to(at) - belief.pose.heading).abs();
-    seen.x() < BALL_AT - GAP || seen.y().abs() > BESIDE || askew > ASKEW || seen.x() > ESCAPED
-}
-
-/// The direction out of the field, where a ball lies so near a wall or goal that no body gets beside it, or
-/// behind it to push it to `at`.
-pub(in crate::skills::wheels) fn wall(
-    field: &FieldSpec,
-    ball: Point<Field>,
-    at: Point<Field>,
-    pushes: bool,
-    room: f32,
-) -> Option<Angle> {
-    let (x, y) = (ball.x(), ball.y());
-    let (line, post) = (0.5 * field.length, 0.5 * field.goal_width);
-    let to_end = line + field.goal_line_margin - x.abs();
-    let to_side = 0.5 * field.width + field.margin - y.abs();
-    // In the goal, before it, and beside its walls.
-    let at_goal = x.abs() > line - WALL_ROOM && y.abs() < post + BESIDE_POST;
-    let spot = ball - Vector::polar(BEHIND, ball.direction_to(at));
-    let fits = if pushes {
-        stands(field, spot, room)
-            && to_end.min(to_side) > BESIDE_WALL
-            && to_end.max(to_side) > GOES_ROUND + room
-    } else {
-        to_end.min(to_side) > WALL_ROOM
-    };
-    if fits && !at_goal {
-        return None;
-    }
-    let end = Vector::<Field>::new(x, 0.0).unit().unwrap_or_default();
-    let side = Vector::<Field>::new(0.0, y).unit().unwrap_or_default();
-    let out = if at_goal {
-        // Where a goal's wall leaves no room for the body beside the ball, between both.
-        let wall = y.abs() - post;
-        let beyond = x.abs() > line - ROBOT_RADIUS;
-        if beyond && wall < 0.0 && -wall < BESIDE_WALL {
-            end + side
-        } else if beyond && wall > 0.0 && wall - field.goal_wall < BESIDE_WALL {
-            end - side
-        } else {
-            end
-        }
-    } else if to_end.max(to_side) < if pushes { GOES_ROUND } else { IN_CORNER } {
-        end + side
-    } else if to_end < to_side {
-        end
-    } else {
-        side
-    };
-    Some(out.angle())
+    seen.x() < BALL_AT - GAP || seen.y().abs() > PUSHED_BALL_BESIDE_M || askew > ASKEW || seen.x() > ESCAPED
 }
 
 /// A kick that gets a ball off a wall.
@@ -190,7 +141,7 @@ pub(super) fn kick_off(
         return None;
     }
     // Away from a goal beside it.
-    let towards = if ball.y().abs() < goal + ALONG && ahead.x().abs() > 0.5 {
+    let towards = if ball.y().abs() < goal + ROLL_ALONG_WALL_M && ahead.x().abs() > 0.5 {
         Vector::new(0.0, ball.y())
     } else {
         at - ball
@@ -198,18 +149,10 @@ pub(super) fn kick_off(
     let side = if ahead.cross(towards) > 0.0 { 1.0 } else { -1.0 };
     let askew = KICKS_ASKEW.iter().cycle().skip(usize::from(tries)).take(KICKS_ASKEW.len());
     let faces = askew.map(|askew| out + Angle::new(side * askew));
-    let fits = |face: &Angle| stands(field, ball - Vector::polar(BEHIND, *face), -TIGHT);
+    let fits = |face: &Angle| stands(field, ball - Vector::polar(LINE_UP_BEHIND_M, *face), -TIGHT);
     let face = { faces }.find(fits);
     let speed = if face.is_some() { OFF_WALL } else { INTO_CORNER };
     Some(OffWall { face: face.unwrap_or(out), speed: speed + STRONGER * nth, one_wall: face.is_some() })
-}
-
-/// A body has this much room there beyond what it needs, m.
-fn stands(field: &FieldSpec, spot: Point<Field>, room: f32) -> bool {
-    let body = BODY + room;
-    let goal = spot.x().abs() > 0.5 * field.length - body
-        && spot.y().abs() < 0.5 * field.goal_width + field.goal_wall + body;
-    !goal && field.surface().grown(-body).contains(spot)
 }
 
 /// From ball to the centre of who goes past it, m, and from where on it is past.
@@ -224,14 +167,14 @@ const GO_IN_AT_WALL: f32 = 0.12;
 /// A faster ball is met, m/s.
 const ROLLING: f32 = 0.3;
 /// The ball is there, m: less than the rules' 0.15.
-pub(super) const NEAR_ENOUGH: f32 = 0.12;
+pub(super) const PLACED_M: f32 = 0.12;
 /// With this a ball is kicked off a wall, m/s: it leaves a board with 0.4 to 0.8 across and rests within a
 /// metre; …
 const OFF_WALL: f32 = 2.2;
 /// … and this much more for each earlier try, m/s.
 const STRONGER: f32 = 0.5;
 /// So far along a wall it rolls then, m: not before a goal.
-const ALONG: f32 = 1.0;
+const ROLL_ALONG_WALL_M: f32 = 1.0;
 /// Off the wall's normal, rad: 40°, more leaves no room for the body; beside goals there is room for less
 /// only, and with less the ball comes back to the body.
 const KICKS_ASKEW: [f32; 3] = [0.7, 0.45, 0.25];
@@ -244,7 +187,7 @@ const ASKEW_OUT: f32 = 0.2;
 /// How fast a ball is pushed at first, m/s.
 const PUSH: f32 = 2.0;
 /// How fast a ball is pulled off a wall that does not follow, m/s.
-const HELD: f32 = 0.16;
+const HELD_BALL_PULL_SPEED: f32 = 0.16;
 /// A ball before the front does not get lost by speeding up: share of the acceleration.
 const PUSHES: f32 = 1.6;
 /// A pushed ball that no roller holds is slowed down by this on its path, m/s²: about as field surfaces do,
@@ -258,32 +201,18 @@ const CREEP: f32 = 0.2;
 /// estimate.
 const LAG: f32 = 0.05;
 /// A push ends this far before the place, m: within what the rules allow, and half a second sooner.
-const SHORT: f32 = 0.07;
+const PUSH_STOPS_SHORT_M: f32 = 0.07;
 /// A push aims this far ahead on the ball's path, m: no less than a robot takes to brake.
-const AHEAD: f32 = 0.9;
+const PUSH_AIM_AHEAD_M: f32 = 0.9;
 /// A pushed ball this far beside the middle is lost, m; ahead, m.
-const BESIDE: f32 = 0.07;
+const PUSHED_BALL_BESIDE_M: f32 = 0.07;
 const ESCAPED: f32 = 0.5;
-/// From a ball to the centre of who lines up behind it, m (`get_ball`).
-const BEHIND: f32 = BALL_AT + 0.1;
-/// A body, and room to get there, m.
-const BODY: f32 = ROBOT_RADIUS + 0.03;
 /// Room that a kick needs less than going around, m.
 const TIGHT: f32 = 0.02;
-/// A ball this near a wall leaves no room for a body beside it that turns, m; …
-const WALL_ROOM: f32 = 0.16;
-/// … and this near none for one that goes along.
-const BESIDE_WALL: f32 = 0.1;
-/// The same beyond a post, m: a body across and its path around.
-const BESIDE_POST: f32 = 0.3;
-/// Nearer than this to two walls no body gets around a ball on either side, m: it, a body and margins.
-const GOES_ROUND: f32 = 0.3;
-/// Nearer than this to two walls a ball is pulled between them, m.
-const IN_CORNER: f32 = 0.2;
 /// How far it is pulled off a wall before anything else, m.
 const CLEAR_OF_WALL: f32 = 0.3;
 /// While it turns by more than this a ball is pulled with this share of the acceleration, rad.
-const TURNS: f32 = 0.3;
+const TURNING_ANGLE_MIN: f32 = 0.3;
 const SIDEWAYS: f32 = 0.4;
 /// Nearer than this to the place the heading stays, m.
 const KEEPS_HEADING: f32 = 0.15;
@@ -292,27 +221,8 @@ const KEEPS_HEADING: f32 = 0.15;
 mod tests {
     use super::*;
     use crate::skills::wheels::testing::belief;
+    use crate::skills::wheels::wall::wall;
     use rules::League;
-
-    fn out(ball: (f32, f32), pushes: bool) -> Option<f32> {
-        let at = Point::new(0.0, 0.0);
-        let field = League::DivisionB.field();
-        wall(&field, Point::new(ball.0, ball.1), at, pushes, 0.0).map(Angle::to_degrees)
-    }
-
-    #[test]
-    fn a_ball_in_a_corner_is_come_to_from_the_field_between_both_walls() {
-        assert!((out((4.75, 3.25), false).unwrap() - 45.0).abs() < 1e-3);
-        assert!((out((1.0, -3.25), false).unwrap() + 90.0).abs() < 1e-3);
-        assert!(out((-4.6, 0.2), false).unwrap().abs() > 179.9);
-        // In the goal's own corner, and outside beside its wall.
-        assert!((out((4.6, 0.47), false).unwrap() - 45.0).abs() < 1e-3);
-        assert!((out((4.6, 0.55), false).unwrap() + 45.0).abs() < 1e-3);
-        assert_eq!(out((1.0, 1.0), false), None);
-        // Pulled it is free where no robot can get behind it to push it.
-        assert_eq!(out((4.6, 2.0), false), None);
-        assert!(out((4.6, 2.0), true).is_some());
-    }
 
     #[test]
     fn a_ball_is_kicked_off_a_wall_beside_the_place_and_straight_into_corners_and_nets() {
