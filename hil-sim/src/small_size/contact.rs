@@ -287,7 +287,7 @@ impl World {
         }
     }
 
-    /// Boards round the field surface, and the walls of the hall beyond them, which only flying balls reach.
+    /// Boards round the field surface, and the walls of the venue beyond them, which only flying balls reach.
     fn stay_in_boards(&mut self, before: &Ball) {
         let [x, y] = self.pitch.corner();
         let radius = self.parameters.ball.radius;
@@ -355,5 +355,5 @@ const SPEED_MAX: f32 = super::parameters::BALL_SPEED_MAX;
 const NEAR_MAX: usize = 8;
 /// Speed at which a ball that fell on a robot leaves it, m/s.
 const SLIP_OFF_SPEED: f32 = 0.3;
-/// Distance from the boards to the walls of the hall, m.
+/// Distance from the boards to the walls of the venue, m.
 const HALL_MARGIN: f32 = 2.0;

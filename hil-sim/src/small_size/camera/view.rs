@@ -302,7 +302,7 @@ impl View {
 
 /// Columns and rows of a camera frame: a common 5 MP camera.
 const IMAGE_PIXELS: [u32; 2] = [2448, 2048];
-/// m beyond the field surface that outer cameras see: up to the walls of the hall.
+/// m beyond the field surface that outer cameras see: up to the walls of the venue.
 const OUTSIDE_VIEW: f32 = 2.0;
 /// m that a robot's occlusion reaches, seen from a camera at the far end of its view: 0.15 m high, 45°
 /// oblique.

@@ -232,9 +232,9 @@ pub(super) fn who(id: &ssl::common::RobotId) -> Result<Who, Refusal> {
     }
 }
 
-/// Distance from the boards to the walls of the hall, m.
+/// Distance from the boards to the walls of the venue, m.
 const HALL_MARGIN: f32 = 2.0;
-/// Height of the hall, m.
+/// Height of the venue, m.
 const HALL_HEIGHT: f32 = 20.0;
 /// Maximum speed of a teleported ball, m/s.
 const BALL_SPEED_MAX: f32 = 20.0;

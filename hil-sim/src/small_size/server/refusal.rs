@@ -72,8 +72,8 @@ geometry::labels! {
         /// A dribbler's speed below zero; the dribbler stops.
         #[error("robot {0}: dribbler_speed is negative; this dribbler turns one way, in rpm from 0")]
         DribblerBackwards(u32) = "DRIBBLER_BACKWARDS",
-        /// A position outside the walls of the hall.
-        #[error("{0} lies outside the hall; places are in metres, not millimetres")]
+        /// A position outside the walls of the venue.
+        #[error("{0} lies outside the venue; places are in metres, not millimetres")]
         OutsideHall(&'static str) = "OUTSIDE_HALL",
         /// A teleport with a speed above the maximum; it got the maximum speed.
         #[error("{what}: {asked} is more than the {most} that there can be; it got that")]

@@ -1,0 +1,145 @@
+//! `other_balls`: matches in drawn worlds with a ball that is not the match's: it never becomes the ball.
+
+use arena::game::{Game, GameConfig, Watcher};
+use geometry::{Field, Point};
+use hil_sim::NativeBackend;
+use hil_sim::small_size::WorldChoice;
+use host::tracking::{Tracker, TrackingSettings};
+use prost::Message as _;
+use protocol::Instant;
+use rules::{FieldSpec, League};
+use ssl::vision::{DetectionBall, WrapperPacket};
+
+/// A ball farther from the true one is another, m: more than a fast kick covers in a late camera frame.
+const WRONG_M: f32 = 0.4;
+/// Share of packets with a wrong ball, at most.
+const WRONG_SHARE_MAX: f64 = 0.005;
+/// Worlds of the test; `OTHER_BALLS_WORLDS` sets another number.
+const WORLDS: u64 = 6;
+const SECONDS: u32 = 20;
+
+/// A ball that is not the match's.
+#[derive(Clone, Copy, Debug)]
+enum Other {
+    None,
+    /// At rest behind the touch line, or behind a goal.
+    Spare,
+    /// Two on the field beside it, in sight half of the time.
+    Flickering,
+    /// Carried along the touch line.
+    Carried,
+}
+
+impl Other {
+    const ALL: [Self; 4] = [Self::None, Self::Spare, Self::Flickering, Self::Carried];
+
+    /// Its place in that world, s from the start; `None`: nobody sees it.
+    fn at(self, world: u64, t: f64, field: &FieldSpec) -> Option<Point<Field>> {
+        let share = |n: u64| (world.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (8 * n) & 0xff) as f32 / 255.0;
+        let side = if world.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let x = field.length * (share(1) - 0.5);
+        let beside = 0.5 * field.width + 0.15 + 0.1 * share(2);
+        match self {
+            Self::None => None,
+            Self::Spare if world.is_multiple_of(3) => {
+                Some(Point::new(side * (0.5 * field.length + 0.2), 1.0 + share(3)))
+            }
+            Self::Spare => Some(Point::new(x, side * beside)),
+            Self::Flickering => ((t * 2.0 + f64::from(share(3))) % 1.0 < 0.5)
+                .then(|| Point::new(0.8 * x, side * field.width * (0.2 + 0.2 * share(2)))),
+            Self::Carried => {
+                Some(Point::new(0.5 * field.length * (t * 0.35 + f64::from(x)).sin() as f32, side * beside))
+            }
+        }
+    }
+}
+
+/// A tracker beside the two hosts, which sees the other ball too.
+struct Beside {
+    tracker: Tracker,
+    other: Other,
+    world: u64,
+    field: FieldSpec,
+    seen: Vec<Instant>,
+    wrong: u64,
+    packets: u64,
+    /// Wrong ones in which the other ball was taken for the ball.
+    taken: u64,
+}
+
+impl Watcher for Beside {
+    fn vision(&mut self, now: Instant, bytes: &[u8]) {
+        let mut packet = WrapperPacket::decode(bytes).unwrap();
+        if let Some(image) = &mut packet.detection
+            && let Some(at) = self.other.at(self.world, now.0 as f64 * 1e-6, &self.field)
+        {
+            // A camera for each quarter, or one for all: whoever sees the place sees the ball.
+            let xs = image.robots_blue.iter().chain(&image.robots_yellow).map(|robot| robot.x);
+            let xs: Vec<f32> = xs.chain(image.balls.iter().map(|ball| ball.x)).collect();
+            if xs.iter().any(|x| (x * 1e-3 - at.x()).abs() < 2.0) {
+                image.balls.push(DetectionBall {
+                    confidence: 0.9,
+                    x: at.x() * 1000.0,
+                    y: at.y() * 1000.0,
+                    ..image.balls.first().cloned().unwrap_or_default()
+                });
+            }
+        }
+        self.tracker.handle(&packet, now);
+        self.seen.push(now);
+    }
+
+    fn tick(&mut self, game: &Game<'_>) {
+        if self.seen.drain(..).count() == 0 || game.time() < 1.0 {
+            return;
+        }
+        let (now, truth) = (game.now(), game.world().ball.position);
+        self.packets += 1;
+        let Some(ball) = self.tracker.world(now).ball else { return };
+        // A ball that nobody sees is predicted; what is judged is which ball it is.
+        if ball.position.distance(truth) > WRONG_M {
+            self.wrong += 1;
+            let t = now.0 as f64 * 1e-6;
+            let other = self.other.at(self.world, t, &self.field);
+            self.taken += u64::from(other.is_some_and(|at| at.distance(ball.position) < WRONG_M));
+        }
+    }
+}
+
+#[test]
+fn another_ball_is_the_ball_in_at_most_half_a_percent_of_packets_of_drawn_worlds() {
+    let worlds = std::env::var("OTHER_BALLS_WORLDS").map_or(WORLDS, |given| given.parse().unwrap());
+    let mut failed = Vec::new();
+    for other in Other::ALL {
+        let (mut wrong, mut taken, mut packets) = (0, 0, 0);
+        for world in 1..=worlds {
+            let mut config = GameConfig::new(League::DivisionB, 900 + world, f64::from(SECONDS));
+            config.world = WorldChoice::Random(world);
+            let field = League::DivisionB.field();
+            let mut beside = Beside {
+                tracker: Tracker::new(TrackingSettings::default()),
+                other,
+                world,
+                field,
+                seen: Vec::new(),
+                wrong: 0,
+                packets: 0,
+                taken: 0,
+            };
+            let mut backend = NativeBackend::new(case_library::division_b());
+            let mut game = Game::new(&config, &mut backend).unwrap();
+            for _ in 0..SECONDS * 100 {
+                game.step(&mut beside).unwrap();
+            }
+            wrong += beside.wrong;
+            taken += beside.taken;
+            packets += beside.packets;
+        }
+        let share = wrong as f64 / packets as f64;
+        println!("{other:?}: {wrong} of {packets} wrong ({:.2} %), the other ball in {taken}", 100.0 * share);
+        if taken as f64 / packets as f64 > WRONG_SHARE_MAX {
+            failed.push((other, share));
+        }
+    }
+    assert!(failed.is_empty(), "{failed:?}");
+}
