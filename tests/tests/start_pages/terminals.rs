@@ -10,6 +10,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use flate2::read::GzDecoder;
 use match_tests::workspace::root;
 
 use crate::is_there;
@@ -161,10 +162,19 @@ fn robots_move(until: Instant) -> bool {
     places.len() >= PLACES_MIN
 }
 
+/// The page's answer to a request, its gzip taken off.
 fn get(path: &str) -> std::io::Result<String> {
     let mut stream = TcpStream::connect("127.0.0.1:8080")?;
     write!(stream, "GET {path} HTTP/1.1\r\nHost: 127.0.0.1:8080\r\nConnection: close\r\n\r\n")?;
-    let mut answer = String::new();
-    stream.read_to_string(&mut answer)?;
-    Ok(answer)
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer)?;
+    let body = answer.windows(4).position(|bytes| bytes == b"\r\n\r\n").map_or(answer.len(), |at| at + 4);
+    let (head, body) = answer.split_at(body);
+    let mut text = String::new();
+    if String::from_utf8_lossy(head).contains("content-encoding: gzip") {
+        GzDecoder::new(body).read_to_string(&mut text)?;
+    } else {
+        text.push_str(&String::from_utf8_lossy(body));
+    }
+    Ok(text)
 }
