@@ -15,7 +15,10 @@ use crate::{referee, tracker, vision};
 /// A packet of detections alone was the same in 2014 as it is today, and counts as today's.
 pub fn guess(payload: &[u8]) -> Option<MessageKind> {
     let fields = fields(payload)?;
-    if is(&fields, &REFEREE, &REFEREE_REQUIRED) && referee::Referee::decode(payload).is_ok() {
+    // Controllers of other years have further fields; no other message has the required ones.
+    let known = |field: &&Field<'_>| REFEREE.iter().any(|(number, _)| *number == field.number);
+    let of_referee: Vec<_> = fields.iter().filter(known).copied().collect();
+    if is(&of_referee, &REFEREE, &REFEREE_REQUIRED) && referee::Referee::decode(payload).is_ok() {
         return Some(MessageKind::Refbox2013);
     }
     if is(&fields, &WRAPPER, &[]) && !fields.is_empty() && fields.iter().all(vision_part) {
@@ -108,6 +111,9 @@ mod tests {
         assert_eq!(guess(&old.encode_to_vec()), Some(MessageKind::Vision2010));
         let referee = referee::Referee::default();
         assert_eq!(guess(&referee.encode_to_vec()), Some(MessageKind::Refbox2013));
+        // Game events as controllers of 2019 sent them (field 13), and a field that is not known yet.
+        let odd = [referee.encode_to_vec(), vec![0x6a, 0, 0x98, 0x06, 5]].concat();
+        assert_eq!(guess(&odd), Some(MessageKind::Refbox2013));
         let tracker = TrackerWrapperPacket { uuid: "57afc6f8".into(), ..Default::default() };
         assert_eq!(guess(&tracker.encode_to_vec()), Some(MessageKind::Tracker2020));
     }
