@@ -54,7 +54,8 @@ fn before_touch(scene: &ActionScene<'_>, settings: &RetrievalSettings) -> Option
         .map(|_| AbortReason::PathBlocked)
 }
 
-/// Whether a ball whose estimate lies outside of the case's scope may lie inside: within [`CERTAIN_SIGMAS`] deviations.
+/// Whether a ball whose estimate lies outside of the case's scope may lie inside: within [`CERTAIN_SIGMAS`]
+/// deviations.
 fn may_be_in_scope(scene: &ActionScene<'_>, ball: PointMm) -> bool {
     let sigma = if cfg!(feature = "legged") { scene.belief.ball_sigma } else { 0.0 };
     if sigma <= 0.0 {

@@ -1,5 +1,5 @@
-//! `wall`: the side from which a robot comes to a ball that lies at a wall or a goal, and the room that a body
-//! has there.
+//! `wall`: the side from which a robot comes to a ball that lies at a wall or a goal, and the room that a
+//! body has there.
 
 use geometry::{Angle, Field, Point, Vector};
 use rules::FieldSpec;
