@@ -81,7 +81,7 @@ impl Watcher for Beside {
                     confidence: 0.9,
                     x: at.x() * 1000.0,
                     y: at.y() * 1000.0,
-                    ..image.balls.first().cloned().unwrap_or_default()
+                    ..image.balls.first().copied().unwrap_or_default()
                 });
             }
         }
