@@ -104,7 +104,11 @@ impl Simulator {
         let size = observation_len(&self.settings);
         let wrong = || refused(format!("into: expected a writable, contiguous buffer of {size} float32"));
         let buffer = PyBuffer::<f32>::get(into).map_err(|_| wrong())?;
-        if buffer.readonly() || !buffer.is_c_contiguous() || buffer.item_count() != size {
+        if !is_little_endian(&buffer)
+            || buffer.readonly()
+            || !buffer.is_c_contiguous()
+            || buffer.item_count() != size
+        {
             return Err(wrong());
         }
         let values = &mut self.observation[..];
@@ -301,6 +305,11 @@ fn start(settings: &Settings, seed: u64) -> PyResult<Episode> {
         .ok_or_else(|| PyRuntimeError::new_err("that league has no simulator of wheeled robots"))
 }
 
+/// Whether a buffer's numbers are in this machine's order of bytes: `PyBuffer` takes both.
+fn is_little_endian(buffer: &PyBuffer<f32>) -> bool {
+    !buffer.format().to_bytes().starts_with(b">")
+}
+
 /// Reads numbers from a buffer of float32, or from a sequence of numbers.
 fn read(name: &str, from: &Bound<'_, PyAny>, into: &mut [f32]) -> PyResult<()> {
     let size = into.len();
@@ -309,7 +318,9 @@ fn read(name: &str, from: &Bound<'_, PyAny>, into: &mut [f32]) -> PyResult<()> {
             "{name}: expected {size} numbers, {ACTION_LEN} a robot: forward, left, turn, kick, dribbler"
         ))
     };
-    if let Ok(buffer) = PyBuffer::<f32>::get(from) {
+    if let Ok(buffer) = PyBuffer::<f32>::get(from)
+        && is_little_endian(&buffer)
+    {
         if buffer.item_count() != size {
             return Err(wrong());
         }

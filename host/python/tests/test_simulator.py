@@ -265,7 +265,7 @@ class Edges(unittest.TestCase):
         self.assertEqual(len(hashes), 1)
 
     def test_the_environment_is_found_by_its_name_and_renders_a_line(self):
-        code = "import gymnasium; print(gymnasium.make('onetwo/Score-v0').unwrapped.metadata['render_modes'])"
+        code = "import gymnasium; print(gymnasium.make('onetwo.env:onetwo/Score-v0').unwrapped.metadata['render_modes'])"
         printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
         self.assertEqual(printed.strip(), "['ansi']")
         env = gymnasium.make("onetwo/Score-v0", opponents=1, render_mode="ansi")
