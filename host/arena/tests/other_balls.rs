@@ -14,7 +14,8 @@ use ssl::vision::{DetectionBall, WrapperPacket};
 const WRONG_M: f32 = 0.4;
 /// Share of packets with a wrong ball, at most.
 const WRONG_SHARE_MAX: f64 = 0.005;
-/// Worlds of the test; `OTHER_BALLS_WORLDS` sets another number.
+/// Worlds of the test; `OTHER_BALLS_WORLDS` sets another number. **With 40 it fails**: of 71,574 packets a
+/// flickering ball on the field is the ball in 1,069 (1.5 %), a spare or carried one in 75 (0.1 %).
 const WORLDS: u64 = 6;
 const SECONDS: u32 = 20;
 
@@ -24,7 +25,7 @@ enum Other {
     None,
     /// At rest behind the touch line, or behind a goal.
     Spare,
-    /// Two on the field beside it, in sight half of the time.
+    /// At rest on the field, detected half of the time.
     Flickering,
     /// Carried along the touch line.
     Carried,
@@ -33,7 +34,7 @@ enum Other {
 impl Other {
     const ALL: [Self; 4] = [Self::None, Self::Spare, Self::Flickering, Self::Carried];
 
-    /// Its place in that world, s from the start; `None`: nobody sees it.
+    /// Its place in that world at `t`, s from the start; `None`: not detected.
     fn at(self, world: u64, t: f64, field: &FieldSpec) -> Option<Point<Field>> {
         let share = |n: u64| (world.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (8 * n) & 0xff) as f32 / 255.0;
         let side = if world.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -60,7 +61,10 @@ struct Beside {
     other: Other,
     world: u64,
     field: FieldSpec,
-    seen: Vec<Instant>,
+    /// A packet has come since the last tick.
+    has_packet: bool,
+    /// Packets into which the other ball was put.
+    added: u64,
     wrong: u64,
     packets: u64,
     /// Wrong ones in which the other ball was taken for the ball.
@@ -73,10 +77,11 @@ impl Watcher for Beside {
         if let Some(image) = &mut packet.detection
             && let Some(at) = self.other.at(self.world, now.0 as f64 * 1e-6, &self.field)
         {
-            // A camera for each quarter, or one for all: whoever sees the place sees the ball.
+            // Cameras that detect something nearby detect the ball too.
             let xs = image.robots_blue.iter().chain(&image.robots_yellow).map(|robot| robot.x);
             let xs: Vec<f32> = xs.chain(image.balls.iter().map(|ball| ball.x)).collect();
             if xs.iter().any(|x| (x * 1e-3 - at.x()).abs() < 2.0) {
+                self.added += 1;
                 image.balls.push(DetectionBall {
                     confidence: 0.9,
                     x: at.x() * 1000.0,
@@ -86,17 +91,17 @@ impl Watcher for Beside {
             }
         }
         self.tracker.handle(&packet, now);
-        self.seen.push(now);
+        self.has_packet = true;
     }
 
     fn tick(&mut self, game: &Game<'_>) {
-        if self.seen.drain(..).count() == 0 || game.time() < 1.0 {
+        if !std::mem::take(&mut self.has_packet) || game.time() < 1.0 {
             return;
         }
         let (now, truth) = (game.now(), game.world().ball.position);
         self.packets += 1;
         let Some(ball) = self.tracker.world(now).ball else { return };
-        // A ball that nobody sees is predicted; what is judged is which ball it is.
+        // A ball that no camera detects is extrapolated; what is judged is which ball it is.
         if ball.position.distance(truth) > WRONG_M {
             self.wrong += 1;
             let t = now.0 as f64 * 1e-6;
@@ -111,7 +116,7 @@ fn another_ball_is_the_ball_in_at_most_half_a_percent_of_packets_of_drawn_worlds
     let worlds = std::env::var("OTHER_BALLS_WORLDS").map_or(WORLDS, |given| given.parse().unwrap());
     let mut failed = Vec::new();
     for other in Other::ALL {
-        let (mut wrong, mut taken, mut packets) = (0, 0, 0);
+        let (mut wrong, mut taken, mut packets, mut added) = (0, 0, 0, 0);
         for world in 1..=worlds {
             let mut config = GameConfig::new(League::DivisionB, 900 + world, f64::from(SECONDS));
             config.world = WorldChoice::Random(world);
@@ -121,7 +126,8 @@ fn another_ball_is_the_ball_in_at_most_half_a_percent_of_packets_of_drawn_worlds
                 other,
                 world,
                 field,
-                seen: Vec::new(),
+                has_packet: false,
+                added: 0,
                 wrong: 0,
                 packets: 0,
                 taken: 0,
@@ -134,9 +140,14 @@ fn another_ball_is_the_ball_in_at_most_half_a_percent_of_packets_of_drawn_worlds
             wrong += beside.wrong;
             taken += beside.taken;
             packets += beside.packets;
+            added += beside.added;
         }
+        assert_eq!(added > packets / 4, !matches!(other, Other::None), "{other:?} was in {added} packets");
         let share = wrong as f64 / packets as f64;
-        println!("{other:?}: {wrong} of {packets} wrong ({:.2} %), the other ball in {taken}", 100.0 * share);
+        println!(
+            "{other:?}: {wrong} of {packets} wrong ({:.2} %), the other ball in {taken}; it was in {added}",
+            100.0 * share
+        );
         if taken as f64 / packets as f64 > WRONG_SHARE_MAX {
             failed.push((other, share));
         }
