@@ -104,7 +104,7 @@ impl Simulator {
         let size = observation_len(&self.settings);
         let wrong = || refused(format!("into: expected a writable, contiguous buffer of {size} float32"));
         let buffer = PyBuffer::<f32>::get(into).map_err(|_| wrong())?;
-        if !is_little_endian(&buffer)
+        if !has_native_byte_order(&buffer)
             || buffer.readonly()
             || !buffer.is_c_contiguous()
             || buffer.item_count() != size
@@ -305,9 +305,10 @@ fn start(settings: &Settings, seed: u64) -> PyResult<Episode> {
         .ok_or_else(|| PyRuntimeError::new_err("that league has no simulator of wheeled robots"))
 }
 
-/// Whether a buffer's numbers are in this machine's order of bytes: `PyBuffer` takes both.
-fn is_little_endian(buffer: &PyBuffer<f32>) -> bool {
-    !buffer.format().to_bytes().starts_with(b">")
+/// Whether a buffer's numbers are in this machine's byte order: `PyBuffer` takes both orders.
+fn has_native_byte_order(buffer: &PyBuffer<f32>) -> bool {
+    let foreign: &[u8] = if cfg!(target_endian = "little") { b">!" } else { b"<" };
+    !buffer.format().to_bytes().first().is_some_and(|order| foreign.contains(order))
 }
 
 /// Reads numbers from a buffer of float32, or from a sequence of numbers.
@@ -319,7 +320,7 @@ fn read(name: &str, from: &Bound<'_, PyAny>, into: &mut [f32]) -> PyResult<()> {
         ))
     };
     if let Ok(buffer) = PyBuffer::<f32>::get(from)
-        && is_little_endian(&buffer)
+        && has_native_byte_order(&buffer)
     {
         if buffer.item_count() != size {
             return Err(wrong());

@@ -264,7 +264,7 @@ class Edges(unittest.TestCase):
             hashes.add(one.trace_hash)
         self.assertEqual(len(hashes), 1)
 
-    def test_the_environment_is_found_by_its_name_and_renders_a_line(self):
+    def test_the_environment_is_found_by_module_and_name_and_renders_a_line(self):
         code = "import gymnasium; print(gymnasium.make('onetwo.env:onetwo/Score-v0').unwrapped.metadata['render_modes'])"
         printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
         self.assertEqual(printed.strip(), "['ansi']")

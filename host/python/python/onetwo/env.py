@@ -12,7 +12,8 @@ import numpy as np
 from gymnasium import spaces
 
 from ._native import Simulator
-from .registration import register
+
+SCORE = "onetwo/Score-v0"
 
 
 class ScoreEnv(gymnasium.Env):
@@ -77,4 +78,5 @@ class ScoreEnv(gymnasium.Env):
         return observation, reward, end is not None and not truncated, truncated, info
 
 
-register()
+if SCORE not in gymnasium.registry:
+    gymnasium.register(SCORE, entry_point="onetwo.env:ScoreEnv")
