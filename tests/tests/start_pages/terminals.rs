@@ -136,9 +136,7 @@ impl Terminal {
             }
         }
     }
-}
 
-impl Terminal {
     /// Sends a signal to the command and all that it has started.
     fn signal(&self, name: &str) {
         let group = format!("-{}", self.child.id());
