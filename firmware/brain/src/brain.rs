@@ -158,14 +158,13 @@ impl<'a> Brain<'a> {
     /// frames reuses its path.
     fn intent(&mut self, now: Instant) -> Intent {
         let since = core::mem::take(&mut self.since);
-        let received_most = if self.actuation.winds() { RECEIVED_MOST_WINDING } else { RECEIVED_MOST };
-        let is_busy = since.retrieved || since.received > received_most;
+        self.actuation.set_received(since.received);
         if since.gameplay_changed {
             Intent::Stand { face: None }
         } else if !self.has_short_steps() {
             self.act(now)
-        } else if is_busy && self.reuses_left > 0 {
-            self.reuses_left -= 1;
+        } else if since.retrieved || since.received > RECEIVED_MAX && self.reuses_left > 0 {
+            self.reuses_left = self.reuses_left.saturating_sub(1);
             Intent::KeepPath
         } else {
             self.reuses_left = PATH_REUSES_MAX.min(self.reuses_left + 1);
@@ -243,11 +242,8 @@ impl<'a> Brain<'a> {
 }
 
 /// Frames that a short step opens and still plans: both parts of a snapshot, a command and two teammates'
-/// beacons. Opening one takes 2,000 instructions, planning up to 25,000 of the 40,000 that a step may take
-/// (docs/architecture.md §9).
-const RECEIVED_MOST: u8 = 5;
-/// One less where the path leads around something: planning such a path takes 7,000 of them.
-const RECEIVED_MOST_WINDING: u8 = 4;
+/// beacons. Opening one takes 2,000 instructions, which planning has less (`Drivetrain`).
+const RECEIVED_MAX: u8 = 5;
 /// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual
 /// beacons between them, twice. Each step that plans adds one again, so that on a radio channel that is
 /// always full every second step plans.

@@ -63,11 +63,10 @@ impl Actuation {
         matches!(self, Self::Wheels(..))
     }
 
-    /// On wheels: whether the last path led around something.
-    pub fn winds(&self) -> bool {
-        match self {
-            Self::Legs(_) => false,
-            Self::Wheels(_, wheels) => wheels.drivetrain.winds(),
+    /// Tells it how many frames were opened in this step.
+    pub fn set_received(&mut self, frames: u8) {
+        if let Self::Wheels(_, wheels) = self {
+            wheels.drivetrain.set_received(frames);
         }
     }
 

@@ -6,12 +6,12 @@
 //! ([`Intent::KeepPath`]). SI, body frame out.
 
 use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
-use motion::avoid::{self, Course, Restraint, RouteVerdict};
+use motion::avoid::{self, Carried, Course, Restraint};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::Instant;
 use protocol::robot_io::{OmniKick, WHEELED_STEP};
 use rules::limits::ROBOT_RADIUS;
-use rules::{FieldSpec, Phase, RobotSpec, RuleRole, Side};
+use rules::{Phase, RobotSpec, RuleRole, Side};
 
 use super::surroundings::Surroundings;
 use super::{Drive, DriveMode};
@@ -34,6 +34,9 @@ pub struct Drivetrain {
     step: f32,
     /// The path in use; `None` while the robot stands.
     under_way: Option<CurrentPath>,
+    carried: Carried<Field>,
+    /// Frames that were opened in this step.
+    received: u8,
 }
 
 /// Result of the last path planning.
@@ -42,8 +45,6 @@ struct CurrentPath {
     drive: Drive,
     /// The goal, or a point past the first corner of the path to it; `None` while the robot brakes.
     towards: Option<Point<Field>>,
-    /// Whether it leads around something.
-    winds: bool,
 }
 
 impl Drivetrain {
@@ -95,9 +96,9 @@ impl Drivetrain {
         self.angular = twist.angular;
     }
 
-    /// Whether the last path led around something: planning such a path takes longer.
-    pub fn winds(&self) -> bool {
-        self.under_way.is_some_and(|path| path.winds)
+    /// Tells it how many frames were opened in this step: so much less is left for planning.
+    pub fn set_received(&mut self, frames: u8) {
+        self.received = frames;
     }
 
     fn stand(&mut self, belief: &Belief, step: f32, face: Option<Angle>) -> Wanted {
@@ -128,14 +129,13 @@ impl Drivetrain {
         let rests = self.velocity.norm() < THERE_SPEED;
         if rests && from.distance(drive.to) < THERE && !is_moved_by_the_rules(belief.game.phase) {
             // No plan is needed.
-            self.under_way = Some(CurrentPath { drive: *drive, towards: None, winds: false });
+            self.under_way = Some(CurrentPath { drive: *drive, towards: None });
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
         }
         let field = belief.league().field();
-        let (effort, effort_to_leave) = efforts(belief, &field);
         let mut around = Surroundings::none(&field);
         around.look(belief, &field, drive.to, drive.mode);
-        let path = avoid::plan(&Course {
+        let course = Course {
             from,
             velocity: self.velocity,
             to: drive.to,
@@ -143,16 +143,11 @@ impl Drivetrain {
             obstacles: &around.obstacles,
             within: Some(around.within),
             step,
-            effort,
-            effort_to_leave,
-            checks: if effort >= EFFORT_TAKING { avoid::CHECKS_LONG } else { avoid::CHECKS_MAX },
-        });
+            effort: self.effort(belief),
+        };
+        let path = avoid::plan(&course, &mut self.carried);
         let is_free = path.restraint == Restraint::None;
-        self.under_way = Some(CurrentPath {
-            drive: *drive,
-            towards: is_free.then(|| path.motion.to()),
-            winds: is_free && path.verdict != RouteVerdict::Direct,
-        });
+        self.under_way = Some(CurrentPath { drive: *drive, towards: is_free.then(|| path.motion.to()) });
         let there = rests && from.distance(path.goal) < THERE;
         // While we place the ball the others keep off, and the step has no time for it.
         let velocity = match path.next.velocity {
@@ -161,6 +156,20 @@ impl Drivetrain {
             next => short_of_bodies(belief, next),
         };
         self.wanted(belief, step, velocity, Some(drive.face), drive)
+    }
+
+    /// Instructions that are left for planning a path.
+    fn effort(&self, belief: &Belief) -> u32 {
+        let ball_moves = belief.ball.as_ref().is_some_and(|ball| ball.velocity.norm() > BALL_MOVES);
+        let stopped = is_moved_by_the_rules(belief.game.phase);
+        let skill = match belief.game.phase {
+            Phase::BallPlacement(Side::Ours) => EFFORT_TAKING,
+            _ if stopped && belief.game.rule_role == RuleRole::Kicker => EFFORT_TAKING,
+            _ if stopped => 0,
+            _ if ball_moves => EFFORT_BALL_MOVES,
+            _ => EFFORT_IN_PLAY,
+        };
+        EFFORT.saturating_sub(skill + u32::from(self.received) * EFFORT_OF_FRAME).max(EFFORT_LEAST)
     }
 
     fn wanted(
@@ -234,28 +243,6 @@ fn half_turn(angular: f32, step: f32) -> Angle {
     Angle::new(0.5 * (angular * step))
 }
 
-/// Planning effort that a step may spend on a path, and on a path out of a forbidden region. It is what the
-/// other work of the step leaves of 40,000 instructions (`qemu_wheels`).
-fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
-    let ball_moves = belief.ball.as_ref().is_some_and(|ball| ball.velocity.norm() > BALL_MOVES);
-    let stopped = is_moved_by_the_rules(belief.game.phase);
-    let effort = match belief.game.phase {
-        // From behind a goal the path into its opening is long.
-        _ if belief.pose.position.x().abs() > 0.5 * field.length => EFFORT_BEHIND_GOAL,
-        Phase::BallPlacement(Side::Ours) => EFFORT_TAKING,
-        _ if stopped && belief.game.rule_role == RuleRole::Kicker => EFFORT_TAKING,
-        _ if stopped => EFFORT_STOPPED,
-        _ if ball_moves => EFFORT_BALL_MOVES,
-        _ => EFFORT_BALL_RESTS,
-    };
-    let to_leave = match effort {
-        EFFORT_BEHIND_GOAL if stopped => EFFORT_BEHIND_GOAL_TO_LEAVE,
-        _ if stopped => EFFORT_STOPPED_TO_LEAVE,
-        _ => EFFORT_TO_LEAVE,
-    };
-    (effort, to_leave)
-}
-
 /// Robots within this distance are slowed for, m: two that close at 3 m/s are a third of a second apart.
 const NOTICES: f32 = 1.0;
 /// Centres that pass this far apart do not touch, m: two radii, and what positions and directions err by.
@@ -266,23 +253,19 @@ const LATE: f32 = 0.12;
 const TOUCHES_AT: f32 = 1.0;
 /// Deceleration down to that, m/s²: what weak brakes do (estimate).
 const BOTH_BRAKE: f32 = 2.0;
-/// In play: eight pieces among three obstacles, five among a dozen; only what stands near the path is an
-/// obstacle. The interception of a moving ball is computed in the same step.
-const EFFORT_BALL_MOVES: u32 = 94;
-/// The same while the ball is stationary.
-const EFFORT_BALL_RESTS: u32 = 126;
-/// The same while the ball is not in play: neither a case nor an interception is computed then.
-const EFFORT_STOPPED: u32 = 200;
-/// Behind a goal line.
-const EFFORT_BEHIND_GOAL: u32 = 312;
-/// The same for a robot that places the ball or kicks a restart: it also plans a path behind the ball.
-const EFFORT_TAKING: u32 = 180;
-/// A path out of a forbidden region while the ball is not in play.
-const EFFORT_STOPPED_TO_LEAVE: u32 = 400;
-/// The same behind a goal line.
-const EFFORT_BEHIND_GOAL_TO_LEAVE: u32 = 460;
-/// A path out of a forbidden region in play, where a step may retrieve a case too.
-const EFFORT_TO_LEAVE: u32 = 38;
+/// Instructions that a step leaves for planning a path besides its own fixed work: at most 36,000 of them
+/// (docs/architecture.md §9) less what opening no frame at all and the smallest skill take.
+const EFFORT: u32 = 22_000;
+/// Instructions of opening a frame and of what follows from it.
+const EFFORT_OF_FRAME: u32 = 2_200;
+/// Instructions of a skill in play, where a case or an interception may be computed.
+const EFFORT_IN_PLAY: u32 = 4_500;
+/// The same where the ball moves.
+const EFFORT_BALL_MOVES: u32 = 8_000;
+/// Instructions of placing the ball or kicking a restart: it also plans a path behind the ball.
+const EFFORT_TAKING: u32 = 6_000;
+/// Least effort, whatever came in: a straight path.
+const EFFORT_LEAST: u32 = 7_500;
 /// A ball faster than this is intercepted, m/s.
 const BALL_MOVES: f32 = 0.05;
 
