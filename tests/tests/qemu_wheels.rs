@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use brain::BrainConfig;
+use firmware_build::inspect::{STACK_BUDGET, STEP_BUDGET};
 use geometry::{Field, GoalEnd, Point, Pose, Twist, Vector};
 use hil_sim::small_size::{Ball, Drive, Order, Parameters, World};
 use hil_sim::{Backend, Mcu, Meter, NativeBackend, QemuBackend};
@@ -23,15 +24,8 @@ use protocol::lockstep::TickIn;
 use protocol::quantized::{WirePoint, WirePose, to_mm};
 use protocol::team::TeamMessage;
 use protocol::{Instant, RobotId, TeamId, Who};
-use rules::{Colour, League, Phase, RobotSpec, Side};
+use rules::{Colour, League, Phase, Side};
 
-/// Instructions of a step: the budget for the default robot, for others what longer matches are held to.
-const STEP_BUDGET: u32 =
-    if DEFAULT { firmware_build::inspect::STEP_BUDGET } else { match_tests::hil::WORST_OF_LONG };
-/// The robot of this build is the one that the simulator's worlds are written for.
-const DEFAULT: bool = matches!(RobotSpec::SOURCE.as_bytes(), b"ours");
-/// Budget of the stack, measured by painting, bytes.
-const STACK_BUDGET: u32 = firmware_build::inspect::STACK_BUDGET;
 /// Duration of each of the parts below, s.
 const SECONDS: u64 = 6;
 
