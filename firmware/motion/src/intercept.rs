@@ -91,19 +91,35 @@ pub fn kick_place<F: Copy>(ball: Point<F>, target: Point<F>, reach: f32) -> Poin
 impl<F: Copy> Interception<'_, F> {
     /// Finds the interception that `request` asks for; else where to follow the ball.
     pub fn find<L: CalcMotion>(&self, limits: &L, request: InterceptRequest) -> InterceptVerdict<F> {
+        let mut effort = Effort { left: u32::MAX };
         let best = match request {
-            InterceptRequest::Soonest => self.soonest(limits, u32::MAX),
-            InterceptRequest::Safest => self.safest(limits),
+            InterceptRequest::Soonest => self.soonest(limits, &mut effort),
+            InterceptRequest::Safest => self.safest(limits, &mut effort),
         };
         best.map_or_else(|| self.chase(limits, self.horizon()), InterceptVerdict::Intercepts)
     }
 
-    /// As [`Interception::find`] with [`InterceptRequest::Soonest`], in bounded time: after `most` points
-    /// without an interception only every fourth is tested, and after as many more one of eight; from the
-    /// first in time back by bisection.
-    pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> InterceptVerdict<F> {
-        let best = self.soonest(limits, most);
-        best.map_or_else(|| self.chase(limits, self.horizon()), InterceptVerdict::Intercepts)
+    /// As [`Interception::find`], of ever fewer points while they are in vain, and with no more than `most`
+    /// instructions of a Cortex-M4; also returns how many it took, by the estimates of its parts.
+    pub fn find_within<L: CalcMotion>(
+        &self,
+        limits: &L,
+        request: InterceptRequest,
+        most: u32,
+    ) -> (InterceptVerdict<F>, u32) {
+        let mut effort = Effort { left: most };
+        let best = match request {
+            InterceptRequest::Soonest => self.soonest(limits, &mut effort),
+            InterceptRequest::Safest => self.about_safest(limits, &mut effort),
+        };
+        let verdict = match best {
+            Some(interception_point) => InterceptVerdict::Intercepts(interception_point),
+            None => {
+                effort.spend(cost::MOTION);
+                self.chase(limits, self.horizon())
+            }
+        };
+        (verdict, most - effort.left)
     }
 
     fn horizon(&self) -> f32 {
@@ -115,39 +131,45 @@ impl<F: Copy> Interception<'_, F> {
         (self.horizon() * (1.0 / STEP)) as u32
     }
 
-    fn soonest<L: CalcMotion>(&self, limits: &L, most: u32) -> Option<InterceptionPoint<F>> {
+    fn soonest<L: CalcMotion>(&self, limits: &L, effort: &mut Effort) -> Option<InterceptionPoint<F>> {
         let steps = self.steps();
+        let bounded = effort.is_bounded();
         // The last point without an interception, the number of such points, and their stride.
         let (mut late, mut vain, mut stride) = (0, 0, 1);
-        let mut begins = 0.0;
-        for block in 0..=steps / BLOCK {
-            let (first, last) = (block * BLOCK, steps.min(block * BLOCK + BLOCK - 1));
-            let time = if last == steps { self.horizon() } else { last as f32 * STEP };
-            let (ends, _) = self.ball.progress(time);
-            if self.is_out_of_reach(limits, [begins, ends], time) {
-                late = last;
-            } else {
-                let mut step = first;
-                while step <= last {
-                    match self.look(limits, step as f32 * STEP, 0.0) {
-                        Look::Intercepts(interception_point) => {
-                            return Some(self.sooner(limits, late, step, interception_point));
-                        }
-                        Look::TooLate | Look::OutOfReach => vain += 1,
+        let (mut step, mut block_ends) = (0, 0);
+        while step <= steps {
+            if step >= block_ends {
+                let first = step - step % BLOCK;
+                let last = steps.min(first + BLOCK - 1);
+                let time = if last == steps { self.horizon() } else { last as f32 * STEP };
+                if self.is_out_of_reach(limits, [first as f32 * STEP, time], time, effort) {
+                    (late, step) = (last, last + 1);
+                    if last == steps {
+                        return None;
                     }
-                    late = step;
-                    if vain == most {
-                        (vain, stride) = (0, stride * COARSER);
-                    }
-                    step += stride;
+                    continue;
                 }
-                if last == steps {
-                    return self.look(limits, time, 0.0).interception_point();
-                }
+                block_ends = last + 1;
             }
-            begins = ends;
+            if !effort.affords_a_look() {
+                return None;
+            }
+            match self.look(limits, step as f32 * STEP, 0.0, effort) {
+                Look::Intercepts(interception_point) => {
+                    return Some(self.sooner(limits, [late, step], interception_point, effort));
+                }
+                Look::TooLate => vain += 1,
+                Look::OutOfReach => {}
+            }
+            late = step;
+            if bounded && vain == VAIN_MAX {
+                (vain, stride) = (0, stride * COARSER);
+            }
+            step += stride;
         }
-        None
+        effort
+            .affords_a_look()
+            .then(|| self.look(limits, self.horizon(), 0.0, effort).interception_point())?
     }
 
     /// The soonest of the points between a late one and one in time, by bisection: once in time, the robot
@@ -155,14 +177,14 @@ impl<F: Copy> Interception<'_, F> {
     fn sooner<L: CalcMotion>(
         &self,
         limits: &L,
-        late: u32,
-        in_time: u32,
+        [late, in_time]: [u32; 2],
         found: InterceptionPoint<F>,
+        effort: &mut Effort,
     ) -> InterceptionPoint<F> {
         let (mut late, mut in_time, mut best) = (late, in_time, found);
-        while in_time - late > 1 {
+        while in_time - late > 1 && effort.affords_a_look() {
             let middle = late.midpoint(in_time);
-            match self.look(limits, middle as f32 * STEP, 0.0).interception_point() {
+            match self.look(limits, middle as f32 * STEP, 0.0, effort).interception_point() {
                 Some(interception_point) => (in_time, best) = (middle, interception_point),
                 None => late = middle,
             }
@@ -170,15 +192,57 @@ impl<F: Copy> Interception<'_, F> {
         best
     }
 
+    /// The probe with the most slack, and the points around it by halves of their distance.
+    fn about_safest<L: CalcMotion>(&self, limits: &L, effort: &mut Effort) -> Option<InterceptionPoint<F>> {
+        let steps = self.steps();
+        let mut best = self.look(limits, self.horizon(), 0.0, effort).interception_point();
+        let mut at = steps;
+        for probe in 1..PROBES {
+            let step = steps * probe / PROBES;
+            if self.improves(limits, step, &mut best, effort) {
+                at = step;
+            }
+        }
+        let mut stride = steps / PROBES;
+        while stride > 1 {
+            stride /= 2;
+            for step in [at.saturating_sub(stride), steps.min(at + stride)] {
+                if self.improves(limits, step, &mut best, effort) {
+                    at = step;
+                }
+            }
+        }
+        best
+    }
+
+    /// Takes the point of a step where it has more slack than the best one; tested as far as the effort goes.
+    fn improves<L: CalcMotion>(
+        &self,
+        limits: &L,
+        step: u32,
+        best: &mut Option<InterceptionPoint<F>>,
+        effort: &mut Effort,
+    ) -> bool {
+        let least = best.as_ref().map_or(0.0, InterceptionPoint::slack);
+        if effort.affords_a_look()
+            && let Look::Intercepts(found) = self.look(limits, step as f32 * STEP, least, effort)
+        {
+            *best = Some(found);
+            return true;
+        }
+        false
+    }
+
     /// Searches from the end backwards, as slack mostly grows to the end, after some probes for the slack
     /// available.
-    fn safest<L: CalcMotion>(&self, limits: &L) -> Option<InterceptionPoint<F>> {
+    fn safest<L: CalcMotion>(&self, limits: &L, effort: &mut Effort) -> Option<InterceptionPoint<F>> {
         let (steps, horizon) = (self.steps(), self.horizon());
-        let mut best = self.look(limits, horizon, 0.0).interception_point();
+        let mut best = self.look(limits, horizon, 0.0, effort).interception_point();
         let mut least = best.as_ref().map_or(0.0, InterceptionPoint::slack);
         for probe in 1..PROBES {
             let step = steps * probe / PROBES;
-            if let Look::Intercepts(interception_point) = self.look(limits, step as f32 * STEP, least) {
+            if let Look::Intercepts(interception_point) = self.look(limits, step as f32 * STEP, least, effort)
+            {
                 least = interception_point.slack();
             }
         }
@@ -186,15 +250,15 @@ impl<F: Copy> Interception<'_, F> {
         while block > 0 {
             block -= 1;
             let (first, last) = (block * BLOCK, steps.min(block * BLOCK + BLOCK - 1));
-            let (begins, _) = self.ball.progress(first as f32 * STEP);
-            let time = last as f32 * STEP;
-            let (ends, _) = self.ball.progress(time);
-            if self.is_out_of_reach(limits, [begins, ends], time - least) {
+            let times = [first as f32 * STEP, last as f32 * STEP];
+            if self.is_out_of_reach(limits, times, times[1] - least, effort) {
                 continue;
             }
             for step in (first..=last).rev() {
                 // The first of equal ones.
-                if let Look::Intercepts(interception_point) = self.look(limits, step as f32 * STEP, least) {
+                if let Look::Intercepts(interception_point) =
+                    self.look(limits, step as f32 * STEP, least, effort)
+                {
                     least = interception_point.slack();
                     best = Some(interception_point);
                 }
@@ -203,21 +267,30 @@ impl<F: Copy> Interception<'_, F> {
         best
     }
 
-    /// Whether no point with the ball's distances in `offsets` is reached within this time.
-    fn is_out_of_reach<L: CalcMotion>(&self, limits: &L, offsets: [f32; 2], within: f32) -> bool {
-        let [begins, ends] = offsets;
+    /// Whether no point where the ball is between these times is reached `within` a time.
+    fn is_out_of_reach<L: CalcMotion>(
+        &self,
+        limits: &L,
+        [from, to]: [f32; 2],
+        within: f32,
+        effort: &mut Effort,
+    ) -> bool {
+        effort.spend(cost::BOUND);
+        let (begins, ends) = (self.ball.progress(from).0, self.ball.progress(to).0);
         let middle = self.ball.from() + self.ball.along() * (0.5 * (begins + ends));
         let radius = 0.5 * (ends - begins) + self.reach;
         limits.is_surely_longer(self.robot, self.velocity, middle, radius, within)
     }
 
     /// The interception at a time, if its slack is `least` at least.
-    fn look<L: CalcMotion>(&self, limits: &L, time: f32, least: f32) -> Look<F> {
+    fn look<L: CalcMotion>(&self, limits: &L, time: f32, least: f32, effort: &mut Effort) -> Look<F> {
+        effort.spend(cost::BOUND);
         let ball = self.ball.from() + self.ball.along() * self.ball.progress(time).0;
         let place = kick_place(ball, self.target, self.reach);
         if limits.is_surely_longer(self.robot, self.velocity, place, 0.0, time - least) {
             return Look::OutOfReach;
         }
+        effort.spend(cost::MOTION);
         // Slightly more than required, as both differences are rounded.
         let within = time - least + ROUNDING;
         let Some(robot_time) = limits.time_within(self.robot, self.velocity, place, within) else {
@@ -232,6 +305,34 @@ impl<F: Copy> Interception<'_, F> {
         let place = kick_place(ball, self.target, self.reach);
         InterceptVerdict::Chase { ball, place, robot_time: limits.time(self.robot, self.velocity, place) }
     }
+}
+
+/// Instructions that are left for a search.
+struct Effort {
+    left: u32,
+}
+
+impl Effort {
+    fn is_bounded(&self) -> bool {
+        self.left < u32::MAX / 2
+    }
+
+    fn spend(&mut self, instructions: u32) {
+        self.left = self.left.saturating_sub(instructions);
+    }
+
+    /// Whether another point may be tested, and after it a motion to where the ball is chased.
+    fn affords_a_look(&self) -> bool {
+        self.left >= cost::BOUND + 2 * cost::MOTION
+    }
+}
+
+/// Instructions of a Cortex-M4 that the parts of a bounded search take at most.
+mod cost {
+    /// Where the ball is at a time, and the bound of the robot's reach.
+    pub(super) const BOUND: u32 = 300;
+    /// The time of a motion.
+    pub(super) const MOTION: u32 = 1_100;
 }
 
 /// Result of testing one point.
@@ -257,7 +358,8 @@ impl<F> Look<F> {
 pub const STEP: f32 = 0.02;
 /// Number of points that are ruled out together.
 const BLOCK: u32 = 8;
-/// In bounded time, factor by which the stride grows after each run of points without an interception.
+/// In bounded time, number of points without an interception after which the stride grows, and its factor.
+const VAIN_MAX: u32 = 2;
 const COARSER: u32 = 4;
 /// Tolerance for rounding, s.
 const ROUNDING: f32 = 1e-5;
@@ -317,7 +419,10 @@ mod tests {
                 until: 2.0,
             };
             let limits = FreeLimits::default();
-            match (asked.find(&limits, InterceptRequest::Soonest), asked.find_within(&limits, 4)) {
+            match (
+                asked.find(&limits, InterceptRequest::Soonest),
+                asked.find_within(&limits, InterceptRequest::Soonest, 30_000).0,
+            ) {
                 (InterceptVerdict::Intercepts(best), InterceptVerdict::Intercepts(found))
                     if best == found =>
                 {
