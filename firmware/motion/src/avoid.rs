@@ -27,7 +27,7 @@ mod route;
 use geometry::{Point, Shape, Vector, math};
 
 use self::exit::ExitSearch;
-use self::item::Scene;
+use self::item::{Scene, cost};
 use self::route::{CarriedRoute, Route};
 use crate::trajectory::{CalcMotion, FreeLimits, FreeMotion, Motion, State, usable};
 
@@ -152,6 +152,11 @@ impl<F> Default for Carried<F> {
     }
 }
 
+/// Instructions with which a plan among this many obstacles tests the straight path at least.
+pub fn effort_least(obstacles: usize) -> u32 {
+    cost::PLAN + 2 * cost::POINT + cost::PIECE + obstacles as u32 * cost::ITEM
+}
+
 /// Plans the next step; `carried` is the robot's own, and kept from step to step.
 pub fn plan<F: Copy>(course: &Course<'_, F>, carried: &mut Carried<F>) -> Detour<F> {
     let Course { from, velocity, to, limits, within, step, .. } = *course;
@@ -189,6 +194,7 @@ fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>, carried: &m
     let goal = if scene.is_inside(to) { exit } else { to };
     scene.keep_apart(from, exit, true);
     let route = Route::find(scene, &mut carried.route, (from, velocity), exit, &limits);
+    carried.exits.is_reachable = route.arrives;
     let towards = match route.via {
         Some(via) if route.arrives => past(from, via, route.behind, &limits),
         Some(via) => via,

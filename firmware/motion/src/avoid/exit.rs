@@ -23,10 +23,14 @@ pub(super) struct ExitSearch<F> {
     candidates: heapless::Vec<Exit<F>, EXITS_MAX>,
     /// Candidates and then lattice points that were tested; [`TESTS_MAX`] once it has ended.
     tested: u32,
+    /// Covered point whose exits are being added, and how many of them were.
+    adding: Option<(Point<F>, usize)>,
     /// Free point that is used where none in sight is found.
     unseen: Option<Point<F>>,
     /// Result of the last search that ended.
     exit: Option<Point<F>>,
+    /// A route leads to it.
+    pub(super) is_reachable: bool,
 }
 
 impl<F> Default for ExitSearch<F> {
@@ -35,8 +39,10 @@ impl<F> Default for ExitSearch<F> {
             start: Point::default(),
             candidates: heapless::Vec::new(),
             tested: TESTS_MAX,
+            adding: None,
             unseen: None,
             exit: None,
+            is_reachable: false,
         }
     }
 }
@@ -48,7 +54,7 @@ impl<F: Copy> ExitSearch<F> {
     }
 
     fn begin(&mut self, start: Point<F>) {
-        (self.start, self.tested, self.unseen) = (start, 0, None);
+        (self.start, self.tested, self.adding, self.unseen) = (start, 0, None, None);
         self.candidates.clear();
     }
 
@@ -109,7 +115,7 @@ impl<F: Copy> Scene<'_, F> {
         let Some(cover) = self.cover(start) else { return start };
         let reserve = self.effort() / 2;
         search.begin(start);
-        self.add_exits(search, &cover, start);
+        self.add_exits(search, &cover, start, reserve);
         let free = self.search(search, TRIES_TO_GOAL_MAX, reserve, |_| true);
         search.end();
         free.or_else(|| self.first_on_rings(start, reserve)).unwrap_or(start)
@@ -117,20 +123,21 @@ impl<F: Copy> Scene<'_, F> {
 
     /// Where to leave what covers a robot: the nearest free point with no body on the straight path to it,
     /// else the nearest. While the search goes on, the one that was found before, or the candidate that it
-    /// would try next.
+    /// would try next. An exit to which a route leads is kept while it is free: of two that
+    /// are about as far, each would be the nearer one on the path to the other.
     pub(super) fn exit(&self, from: Point<F>, search: &mut ExitSearch<F>) -> Point<F> {
         let start = self.within().map_or(from, |within| inside(&within, from));
         let reserve = self.effort() / 2;
         let free = search.exit.filter(|exit| self.cover(*exit).is_none());
         if !search.goes_on() {
             if let Some(exit) = free
-                && start.distance(search.start) < SAME_START
+                && (search.is_reachable || start.distance(search.start) < SAME_START)
             {
                 return exit;
             }
             search.begin(start);
             let Some(cover) = self.cover(start) else { return search.ends_with(start) };
-            self.add_exits(search, &cover, start);
+            self.add_exits(search, &cover, start, reserve);
         }
         if let Some(exit) = self.search(search, TRIES_MAX, reserve, |exit| self.sees(from, exit)) {
             return search.ends_with(exit);
@@ -152,6 +159,13 @@ impl<F: Copy> Scene<'_, F> {
         suits: impl Fn(Point<F>) -> bool,
     ) -> Option<Point<F>> {
         while search.tested < tries && self.effort() > reserve {
+            if let Some((at, _)) = search.adding {
+                match self.cover(at) {
+                    Some(cover) => self.add_exits(search, &cover, at, reserve),
+                    None => search.adding = None,
+                }
+                continue;
+            }
             self.spend(cost::EXIT + search.candidates.len() as u32 * cost::EXIT_KNOWN);
             let Some(at) = search.take_nearest() else {
                 search.tested = tries;
@@ -161,7 +175,7 @@ impl<F: Copy> Scene<'_, F> {
             match self.cover(at) {
                 None if suits(at) => return Some(at),
                 None => search.unseen = search.unseen.or(Some(at)),
-                Some(cover) => self.add_exits(search, &cover, at),
+                Some(cover) => self.add_exits(search, &cover, at, reserve),
             }
         }
         None
@@ -183,52 +197,19 @@ impl<F: Copy> Scene<'_, F> {
         self.nearer(point, FREE).map(|obstacle| obstacle.shape)
     }
 
-    /// Exit points of a shape from a point in it, as far as they lie inside.
-    fn add_exits(&self, search: &mut ExitSearch<F>, shape: &Shape<F>, at: Point<F>) {
+    /// Adds the exit points of a shape from a point in it, as far as they lie inside; while more than `reserve`
+    /// of the effort is left, and the others in the next step.
+    fn add_exits(&self, search: &mut ExitSearch<F>, shape: &Shape<F>, at: Point<F>, reserve: u32) {
         let same = if matches!(shape, Shape::Box { .. }) { SAME } else { SAME_AROUND };
-        let mut add = |exit: Point<F>| {
+        let begins = search.adding.take().map_or(0, |(_, added)| added);
+        for (number, exit) in exits_of(shape, at).into_iter().enumerate().skip(begins) {
+            if number > begins && self.effort() <= reserve {
+                search.adding = Some((at, number));
+                return;
+            }
             if self.stays_within(exit) {
                 self.spend(cost::EXIT + search.candidates.len() as u32 * cost::EXIT_KNOWN);
                 search.add(exit, same);
-            }
-        };
-        match *shape {
-            Shape::Box { low, high } => {
-                add(Point::new(low.x() - OFF, at.y()));
-                add(Point::new(high.x() + OFF, at.y()));
-                add(Point::new(at.x(), low.y() - OFF));
-                add(Point::new(at.x(), high.y() + OFF));
-            }
-            Shape::Disc { center, radius } => {
-                let out = (at - center).unit().unwrap_or(Vector::new(1.0, 0.0)) * (radius + OFF);
-                let left = Vector::new(-out.y(), out.x());
-                // Along both axes first, parallel to walls and boxes: of nearly equal candidates the first
-                // one is used.
-                let off = at - center;
-                let reach =
-                    |off: f32| math::sqrt(math::max((radius + OFF) * (radius + OFF) - off * off, 0.0));
-                let (x, y) = (reach(off.y()), reach(off.x()));
-                add(Point::new(center.x() - x, at.y()));
-                add(Point::new(center.x() + x, at.y()));
-                add(Point::new(at.x(), center.y() - y));
-                add(Point::new(at.x(), center.y() + y));
-                add(center + out);
-                add(center + left);
-                add(center - left);
-                add(center - out);
-            }
-            Shape::Capsule { spine, radius } => {
-                let reach = radius + OFF;
-                let along = spine.vector().unit().unwrap_or(Vector::new(1.0, 0.0));
-                let foot = spine.closest_to(at);
-                let left = Vector::new(-along.y(), along.x()) * reach;
-                if let Some(out) = (at - foot).unit() {
-                    add(foot + out * reach);
-                }
-                add(foot + left);
-                add(foot - left);
-                add(spine.from - along * reach);
-                add(spine.to + along * reach);
             }
         }
     }
@@ -261,6 +242,55 @@ impl<F: Copy> Scene<'_, F> {
     }
 }
 
+/// Exit points of a shape from a point in it.
+fn exits_of<F: Copy>(shape: &Shape<F>, at: Point<F>) -> heapless::Vec<Point<F>, EXITS_OF_SHAPE_MAX> {
+    let mut exits = heapless::Vec::new();
+    // No shape has more than the capacity.
+    match *shape {
+        Shape::Box { low, high } => {
+            let _ = exits.extend_from_slice(&[
+                Point::new(low.x() - OFF, at.y()),
+                Point::new(high.x() + OFF, at.y()),
+                Point::new(at.x(), low.y() - OFF),
+                Point::new(at.x(), high.y() + OFF),
+            ]);
+        }
+        Shape::Disc { center, radius } => {
+            let out = (at - center).unit().unwrap_or(Vector::new(1.0, 0.0)) * (radius + OFF);
+            let left = Vector::new(-out.y(), out.x());
+            // Along both axes first, parallel to walls and boxes: of nearly equal candidates the first one is
+            // used.
+            let off = at - center;
+            let reach = |off: f32| math::sqrt(math::max((radius + OFF) * (radius + OFF) - off * off, 0.0));
+            let (x, y) = (reach(off.y()), reach(off.x()));
+            let _ = exits.extend_from_slice(&[
+                Point::new(center.x() - x, at.y()),
+                Point::new(center.x() + x, at.y()),
+                Point::new(at.x(), center.y() - y),
+                Point::new(at.x(), center.y() + y),
+                center + out,
+                center + left,
+                center - left,
+                center - out,
+            ]);
+        }
+        Shape::Capsule { spine, radius } => {
+            let reach = radius + OFF;
+            let along = spine.vector().unit().unwrap_or(Vector::new(1.0, 0.0));
+            let foot = spine.closest_to(at);
+            let left = Vector::new(-along.y(), along.x()) * reach;
+            exits.extend((at - foot).unit().map(|out| foot + out * reach));
+            let _ = exits.extend_from_slice(&[
+                foot + left,
+                foot - left,
+                spine.from - along * reach,
+                spine.to + along * reach,
+            ]);
+        }
+    }
+    exits
+}
+
 /// The point of the shape nearest to `at`.
 fn inside<F: Copy>(shape: &Shape<F>, at: Point<F>) -> Point<F> {
     match *shape {
@@ -291,6 +321,8 @@ const SAME_AROUND: f32 = 0.03;
 const TRIES_MAX: u32 = 32;
 /// Most candidates for a target that is covered: a robot that gets near it searches again.
 const TRIES_TO_GOAL_MAX: u32 = 2;
+/// Most exit points of a shape: a disc's.
+const EXITS_OF_SHAPE_MAX: usize = 8;
 /// Most candidates that are stored.
 const EXITS_MAX: usize = 64;
 /// Points of the lattice along the region's x and y.

@@ -412,15 +412,17 @@ pub(super) mod cost {
     /// The same for an obstacle: its circle, its margin, and three checks of braking.
     pub(crate) const PLAN_ITEM: u32 = 170;
     /// A piece of path: its corner and its place in the search.
-    pub(crate) const PIECE: u32 = 650;
+    pub(crate) const PIECE: u32 = 900;
     /// A piece of path and an obstacle.
-    pub(crate) const PIECE_ITEM: u32 = 42;
+    pub(crate) const PIECE_ITEM: u32 = 35;
     /// A point.
     pub(crate) const POINT: u32 = 60;
     /// A point and an obstacle.
     pub(crate) const POINT_ITEM: u32 = 14;
+    /// An obstacle in the least plan: two points and a piece of path.
+    pub(crate) const ITEM: u32 = PLAN_ITEM + 2 * POINT_ITEM + PIECE_ITEM;
     /// Where the circle is touched: the shape itself.
-    pub(crate) const SHAPE: u32 = 90;
+    pub(crate) const SHAPE: u32 = 130;
     /// A candidate for an exit: the point itself, …
     pub(crate) const EXIT: u32 = 50;
     /// … and a comparison with one that is known.
