@@ -32,8 +32,8 @@ use telemeter::Spoken;
 /// Inputs since the last step, besides time.
 #[derive(Clone, Copy, Debug, Default)]
 struct Since {
-    /// Number of frames received from teammates and host.
-    received: u8,
+    /// Instructions that they took, by estimate.
+    effort: u32,
     /// Whether it has retrieved.
     retrieved: bool,
     /// A gameplay has started or ended.
@@ -103,11 +103,20 @@ impl<'a> Brain<'a> {
         }
     }
 
+    /// Whether another packet may be opened before the next step. Where steps are short the others are lost,
+    /// as those are that collide.
+    pub(crate) fn takes_packet(&mut self) -> bool {
+        let most = if self.reuses_left > 0 { INPUTS_MAX } else { INPUTS_OF_PLAN_MAX };
+        let takes = !self.has_short_steps() || self.since.effort < most;
+        self.since.effort += EFFORT_OF_PACKET;
+        takes
+    }
+
     /// Handles a teammate's beacon.
     pub fn handle_team_message(&mut self, now: Instant, from: RobotId, message: &TeamMessage) {
         // Teammates' messages to the host are not for this robot.
         let TeamMessage::Beacon(beacon) = message else { return };
-        self.since.received = self.since.received.saturating_add(1);
+        self.since.effort += EFFORT_OF_FRAME;
         self.timers.advance(now);
         self.teammates.receive(now, from, beacon);
         if self.config.approach != Approach::Reactive
@@ -120,7 +129,7 @@ impl<'a> Brain<'a> {
     /// Handles the host's message, sent at most `age` ago; a robot that expects no host ignores it.
     pub fn handle_host_message(&mut self, now: Instant, age: Duration, message: &HostMessage) {
         let Some(host) = &mut self.host else { return };
-        self.since.received = self.since.received.saturating_add(1);
+        self.since.effort += EFFORT_OF_FRAME;
         self.timers.advance(now);
         if let Some(received) = host.handle(now, age, message) {
             self.actuation.receive_host(received);
@@ -145,8 +154,12 @@ impl<'a> Brain<'a> {
             Some(host) => host.see(now, sensors, &mut self.belief),
             None => self.belief.update(now, self.config.robot, sensors, &self.teammates),
         }
-        self.coordinate(now);
-        let intent = self.intent(now);
+        let is_busy =
+            self.has_short_steps() && self.since.effort > INPUTS_OF_PLAN_MAX && self.reuses_left > 0;
+        if !is_busy {
+            self.coordinate(now);
+        }
+        let intent = self.intent(now, is_busy);
         let Self { actuation, belief, teammates, host, .. } = self;
         self.actuators = Some(actuation.act(now, belief, teammates, host.as_ref(), sensors, intent));
         self.spoken.sense(sensors);
@@ -156,14 +169,12 @@ impl<'a> Brain<'a> {
     /// What it wants of its body. A step does not both plan and do something else that takes long: a step in
     /// which a gameplay starts or ends stands; where steps are short, one that retrieved or received many
     /// frames reuses its path.
-    fn intent(&mut self, now: Instant) -> Intent {
+    fn intent(&mut self, now: Instant, is_busy: bool) -> Intent {
         let since = core::mem::take(&mut self.since);
-        self.actuation.set_received(since.received);
+        self.actuation.set_spent(since.effort);
         if since.gameplay_changed {
             Intent::Stand { face: None }
-        } else if !self.has_short_steps() {
-            self.act(now)
-        } else if since.retrieved || since.received > RECEIVED_MAX && self.reuses_left > 0 {
+        } else if is_busy || self.has_short_steps() && since.retrieved {
             self.reuses_left = self.reuses_left.saturating_sub(1);
             Intent::KeepPath
         } else {
@@ -241,9 +252,17 @@ impl<'a> Brain<'a> {
     }
 }
 
-/// Frames that a short step opens and still plans: both parts of a snapshot, a command and two teammates'
-/// beacons. Opening one takes 2,000 instructions, which planning has less (`Drivetrain`).
-const RECEIVED_MAX: u8 = 5;
+/// Instructions of a packet, and of the frame in it where it is for this robot: opened, and what follows from
+/// it.
+const EFFORT_OF_PACKET: u32 = 550;
+const EFFORT_OF_FRAME: u32 = 1_400;
+/// Instructions of a gameplay that starts or ends.
+const EFFORT_OF_GAMEPLAY: u32 = 7_000;
+/// Instructions that inputs of a short step take where it plans, to within a packet: both parts of a snapshot,
+/// a command and two teammates' beacons, and packets for others between them.
+const INPUTS_OF_PLAN_MAX: u32 = 10_500;
+/// The same where it reuses its path.
+const INPUTS_MAX: u32 = 17_000;
 /// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual
 /// beacons between them, twice. Each step that plans adds one again, so that on a radio channel that is
 /// always full every second step plans.

@@ -50,6 +50,9 @@ impl<'a> Station<'a> {
         if !self.brain.has_short_steps() {
             self.has_new_input = true;
         }
+        if !self.brain.takes_packet() {
+            return;
+        }
         let led_by = self.link.host_epoch();
         match self.link.open(now, packet) {
             Ok(Received::Teammate(from, message)) => self.brain.handle_team_message(now, from, &message),

@@ -63,10 +63,10 @@ impl Actuation {
         matches!(self, Self::Wheels(..))
     }
 
-    /// Tells it how many frames were opened in this step.
-    pub fn set_received(&mut self, frames: u8) {
+    /// Tells it how many instructions the inputs of this step took.
+    pub fn set_spent(&mut self, instructions: u32) {
         if let Self::Wheels(_, wheels) = self {
-            wheels.drivetrain.set_received(frames);
+            wheels.drivetrain.set_spent(instructions);
         }
     }
 

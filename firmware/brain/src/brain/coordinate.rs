@@ -8,7 +8,7 @@ use protocol::team::{
 };
 use protocol::{Duration, Instant, RobotId};
 
-use super::{Brain, explained::Explained};
+use super::{Brain, EFFORT_OF_GAMEPLAY, explained::Explained};
 use crate::config::Approach;
 use crate::estimate;
 use crate::execution::{ActionScene, Execution};
@@ -42,6 +42,7 @@ impl Brain<'_> {
         }
         if changed == CycleEvent::Gameplay {
             self.since.gameplay_changed = true;
+            self.since.effort += EFFORT_OF_GAMEPLAY;
             self.begin_part(now);
         }
     }

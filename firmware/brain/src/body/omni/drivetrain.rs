@@ -35,8 +35,8 @@ pub struct Drivetrain {
     /// The path in use; `None` while the robot stands.
     under_way: Option<CurrentPath>,
     carried: Carried<Field>,
-    /// Frames that were opened in this step.
-    received: u8,
+    /// Instructions that inputs took in this step.
+    spent: u32,
 }
 
 /// Result of the last path planning.
@@ -76,13 +76,13 @@ impl Drivetrain {
                 } else {
                     Drive::avoiding(here, heading)
                 };
-                self.follow(belief, step, &drive)
+                self.follow(belief, step, &drive, under_way)
             }
             Intent::Walk { to, face, avoid_ball } => {
                 let drive = if avoid_ball { Drive::avoiding(to, face) } else { Drive::bold(to, face) };
-                self.follow(belief, step, &drive)
+                self.follow(belief, step, &drive, under_way)
             }
-            Intent::Drive(drive) => self.follow(belief, step, &drive),
+            Intent::Drive(drive) => self.follow(belief, step, &drive, under_way),
             // Wheels have no legs.
             Intent::Carry { .. } | Intent::Grab | Intent::Kick(_) => Wanted::STAND,
         }
@@ -96,9 +96,9 @@ impl Drivetrain {
         self.angular = twist.angular;
     }
 
-    /// Tells it how many frames were opened in this step: so much less is left for planning.
-    pub fn set_received(&mut self, frames: u8) {
-        self.received = frames;
+    /// Tells it how many instructions the inputs of this step took: so many fewer are left for planning.
+    pub fn set_spent(&mut self, instructions: u32) {
+        self.spent = instructions;
     }
 
     fn stand(&mut self, belief: &Belief, step: f32, face: Option<Angle>) -> Wanted {
@@ -124,7 +124,13 @@ impl Drivetrain {
         self.wanted(belief, step, velocity, Some(drive.face), &drive)
     }
 
-    fn follow(&mut self, belief: &Belief, step: f32, drive: &Drive) -> Wanted {
+    fn follow(
+        &mut self,
+        belief: &Belief,
+        step: f32,
+        drive: &Drive,
+        under_way: Option<CurrentPath>,
+    ) -> Wanted {
         let from = belief.pose.position + self.moves_on;
         let rests = self.velocity.norm() < THERE_SPEED;
         if rests && from.distance(drive.to) < THERE && !is_moved_by_the_rules(belief.game.phase) {
@@ -135,6 +141,13 @@ impl Drivetrain {
         let field = belief.league().field();
         let mut around = Surroundings::none(&field);
         around.look(belief, &field, drive.to, drive.mode);
+        let effort = self.effort(belief, drive);
+        if effort < avoid::effort_least(around.obstacles.len()) {
+            return match under_way {
+                Some(path) => self.keep_path(belief, step, CurrentPath { drive: *drive, ..path }),
+                None => self.stand(belief, step, Some(drive.face)),
+            };
+        }
         let course = Course {
             from,
             velocity: self.velocity,
@@ -143,7 +156,7 @@ impl Drivetrain {
             obstacles: &around.obstacles,
             within: Some(around.within),
             step,
-            effort: self.effort(belief),
+            effort,
         };
         let path = avoid::plan(&course, &mut self.carried);
         let is_free = path.restraint == Restraint::None;
@@ -159,17 +172,15 @@ impl Drivetrain {
     }
 
     /// Instructions that are left for planning a path.
-    fn effort(&self, belief: &Belief) -> u32 {
-        let ball_moves = belief.ball.as_ref().is_some_and(|ball| ball.velocity.norm() > BALL_MOVES);
+    fn effort(&self, belief: &Belief, drive: &Drive) -> u32 {
         let stopped = is_moved_by_the_rules(belief.game.phase);
         let skill = match belief.game.phase {
-            Phase::BallPlacement(Side::Ours) => EFFORT_TAKING,
-            _ if stopped && belief.game.rule_role == RuleRole::Kicker => EFFORT_TAKING,
+            Phase::BallPlacement(Side::Ours) => EFFORT_OF_TAKING,
+            _ if stopped && belief.game.rule_role == RuleRole::Kicker => EFFORT_OF_TAKING,
             _ if stopped => 0,
-            _ if ball_moves => EFFORT_BALL_MOVES,
-            _ => EFFORT_IN_PLAY,
+            _ => EFFORT_OF_PLAY,
         };
-        EFFORT.saturating_sub(skill + u32::from(self.received) * EFFORT_OF_FRAME).max(EFFORT_LEAST)
+        EFFORT.saturating_sub(skill + drive.effort + self.spent)
     }
 
     fn wanted(
@@ -253,21 +264,13 @@ const LATE: f32 = 0.12;
 const TOUCHES_AT: f32 = 1.0;
 /// Deceleration down to that, m/s²: what weak brakes do (estimate).
 const BOTH_BRAKE: f32 = 2.0;
-/// Instructions that a step leaves for planning a path besides its own fixed work: at most 36,000 of them
-/// (docs/architecture.md §9) less what opening no frame at all and the smallest skill take.
-const EFFORT: u32 = 22_000;
-/// Instructions of opening a frame and of what follows from it.
-const EFFORT_OF_FRAME: u32 = 2_200;
-/// Instructions of a skill in play, where a case or an interception may be computed.
-const EFFORT_IN_PLAY: u32 = 4_500;
-/// The same where the ball moves.
-const EFFORT_BALL_MOVES: u32 = 8_000;
+/// Instructions that a step leaves for inputs, a search of its skill and planning a path: 36,000
+/// (docs/architecture.md §9) less what is the same in every step, and a message sent.
+const EFFORT: u32 = 19_500;
+/// Instructions of a skill in play, where a case is carried out.
+const EFFORT_OF_PLAY: u32 = 2_500;
 /// Instructions of placing the ball or kicking a restart: it also plans a path behind the ball.
-const EFFORT_TAKING: u32 = 6_000;
-/// Least effort, whatever came in: a straight path.
-const EFFORT_LEAST: u32 = 7_500;
-/// A ball faster than this is intercepted, m/s.
-const BALL_MOVES: f32 = 0.05;
+const EFFORT_OF_TAKING: u32 = 1_000;
 
 /// Whether the allowed positions of a robot change in this phase without a new directive: with the ball, or
 /// with the phase itself.
