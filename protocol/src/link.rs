@@ -100,7 +100,8 @@ impl Link {
         opened
     }
 
-    /// Whether a packet is the host's to another robot of the team, by its first bytes: opening it has no effect.
+    /// Whether a packet is the host's to another robot of the team, by its first bytes: opening it has no
+    /// effect.
     pub fn is_to_another(&self, packet: &[u8]) -> bool {
         let Some((head, rest)) = packet.split_first_chunk::<HEADER_LEN>() else { return false };
         let host = Sender::Host.number();

@@ -330,8 +330,8 @@ const EFFORT_OF_UNOPENED: u32 = 510;
 const HOST_INPUTS: u32 = 3 * (EFFORT_OF_PACKET + EFFORT_OF_HOST_FRAME);
 /// Instructions of a gameplay that starts or ends.
 const EFFORT_OF_GAMEPLAY: u32 = 7_000;
-/// Instructions that inputs of a short step take where it plans, to within a packet: both parts of a snapshot,
-/// a command and two teammates' beacons, and packets for others between them.
+/// Instructions that inputs of a short step take where it plans, to within a packet: both parts of a
+/// snapshot, a command and two teammates' beacons, and packets for others between them.
 const INPUTS_OF_PLAN_MAX: u32 = 10_500;
 /// The same of a plan that tests the straight path only.
 const INPUTS_OF_LEAST_PLAN_MAX: u32 = 13_500;

@@ -139,7 +139,8 @@ pub struct Detour<F> {
     pub motion: FreeMotion<F>,
 }
 
-/// What a plan leaves to the robot's next one: searches that did not end within its effort, and their results.
+/// What a plan leaves to the robot's next one: searches that did not end within its effort, and their
+/// results.
 #[derive(Clone, Debug)]
 pub struct Carried<F> {
     exits: ExitSearch<F>,

@@ -98,8 +98,8 @@ impl<F: Copy> Interception<'_, F> {
         best.map_or_else(|| self.chase(limits, self.horizon()), InterceptVerdict::Intercepts)
     }
 
-    /// As [`Interception::find`], of few points, and with no more than `most` instructions of a Cortex-M4; also
-    /// returns how many it took, by the estimates of its parts.
+    /// As [`Interception::find`], of few points, and with no more than `most` instructions of a Cortex-M4;
+    /// also returns how many it took, by the estimates of its parts.
     pub fn find_within<L: CalcMotion>(
         &self,
         limits: &L,
@@ -157,7 +157,7 @@ impl<F: Copy> Interception<'_, F> {
         if best.is_none() {
             (late, in_time, best) = (passes, steps, self.probe(limits, steps, 0.0, effort));
         }
-        while best.is_some() && in_time - late > 1 && *effort >= cost::LOOK {
+        while best.is_some() && in_time - late > 1 && *effort >= cost::PLACE_TEST {
             let middle = late.midpoint(in_time);
             match self.probe(limits, middle, 0.0, effort) {
                 None => late = middle,
@@ -202,11 +202,11 @@ impl<F: Copy> Interception<'_, F> {
         least: f32,
         effort: &mut u32,
     ) -> Option<InterceptionPoint<F>> {
-        if *effort < cost::LOOK {
+        if *effort < cost::PLACE_TEST {
             return None;
         }
         let found = self.look(limits, step as f32 * STEP, least);
-        *effort -= if matches!(found, Look::OutOfReach) { cost::BOUND } else { cost::LOOK };
+        *effort -= if matches!(found, Look::OutOfReach) { cost::BOUND } else { cost::PLACE_TEST };
         found.interception_point()
     }
 
@@ -281,7 +281,7 @@ mod cost {
     /// The time of a motion.
     pub(super) const MOTION: u32 = 1_100;
     /// A point that may be in reach.
-    pub(super) const LOOK: u32 = BOUND + MOTION;
+    pub(super) const PLACE_TEST: u32 = BOUND + MOTION;
 }
 
 /// Result of testing one point.
@@ -351,8 +351,8 @@ mod tests {
 
     #[test]
     fn in_bounded_time_most_interceptions_are_found_and_few_are_later_than_the_soonest() {
-        // The least that are the soonest, and the most that are more than 7 places later or missed. The second is
-        // what a robot has: effort and horizon of the brain's `get_ball`.
+        // The least that are the soonest, and the most that are more than 7 places later or missed. The
+        // second is what a robot has: effort and horizon of the brain's `get_ball`.
         for (until, effort, least, most) in [(2.0, 30_000, 820, 8), (0.8, 7_500, 170, 2)] {
             let [same, near, later, missed] = compared(until, effort);
             assert!(

@@ -79,8 +79,8 @@ impl Chip {
 }
 
 /// Deepest stack that a program may use, bytes, measured by painting (docs/architecture.md §9): a tenth less
-/// than the 16 KiB for which boards keep room, and with [`Budget::IMAGE`]'s RAM less than half of an STM32F405's
-/// 128 KiB.
+/// than the 16 KiB for which boards keep room, and with [`Budget::IMAGE`]'s RAM less than half of an
+/// STM32F405's 128 KiB.
 pub const STACK_BUDGET: u32 = 14_750;
 
 /// Guest instructions that any brain step may take (docs/architecture.md §9), the tasks around the brain

@@ -7,9 +7,9 @@
 //! side that lies on the field surface. Where [`TRIES_MAX`] candidates were tried in vain, the nearest free
 //! point of a lattice over the region is taken.
 //!
-//! Deterministic, and bounded in each step: a search takes half of the plan's effort at most, and a robot's way
-//! out is searched for in as many steps as that takes ([`ExitSearch`]). Candidates are tested in the scene of
-//! the step that tests them.
+//! Deterministic, and bounded in each step: a search takes half of the plan's effort at most, and a robot's
+//! way out is searched for in as many steps as that takes ([`ExitSearch`]). Candidates are tested in the
+//! scene of the step that tests them.
 
 use geometry::{Point, Shape, Vector, math};
 
@@ -197,8 +197,8 @@ impl<F: Copy> Scene<'_, F> {
         self.nearer(point, FREE).map(|obstacle| obstacle.shape)
     }
 
-    /// Adds the exit points of a shape from a point in it, as far as they lie inside; while more than `reserve`
-    /// of the effort is left, and the others in the next step.
+    /// Adds the exit points of a shape from a point in it, as far as they lie inside; while more than
+    /// `reserve` of the effort is left, and the others in the next step.
     fn add_exits(&self, search: &mut ExitSearch<F>, shape: &Shape<F>, at: Point<F>, reserve: u32) {
         let same = if matches!(shape, Shape::Box { .. }) { SAME } else { SAME_AROUND };
         let begins = search.adding.take().map_or(0, |(_, added)| added);

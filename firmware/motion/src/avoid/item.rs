@@ -404,8 +404,9 @@ const TOUCH: f32 = 0.000_5;
 /// A slower obstacle counts as standing, m/s.
 const SPEED_MIN: f32 = 0.02;
 
-/// Instructions of a Cortex-M4 that the parts of a plan take at most, by which its effort is kept: estimates from
-/// the table of firmware/motion/README.md, held together by the worst step of whole matches (`qemu_match`).
+/// Instructions of a Cortex-M4 that the parts of a plan take at most, by which its effort is kept: estimates
+/// from the table of firmware/motion/README.md, held together by the worst step of whole matches
+/// (`qemu_match`).
 pub(super) mod cost {
     /// What every plan does: motions, the checks of its step, the choice of the verdict.
     pub(crate) const PLAN: u32 = 3_500;

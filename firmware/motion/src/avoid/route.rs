@@ -33,8 +33,8 @@ struct Node<F> {
     estimate: f32,
 }
 
-/// What a search leaves to the next step: its corners, where the effort ended it, and the route that was found in
-/// more than one step, which no single search would find again.
+/// What a search leaves to the next step: its corners, where the effort ended it, and the route that was
+/// found in more than one step, which no single search would find again.
 #[derive(Clone, Debug)]
 pub(super) struct CarriedRoute<F> {
     start: Point<F>,
@@ -85,7 +85,7 @@ impl<F: Copy> Route<F> {
         let towards = (goal - from).unit().unwrap_or_default();
         let speed = math::clamp(velocity.dot(towards), 0.0, limits.speed);
         let CarriedRoute { start: began, goal: aimed, nodes, checks, corners } = carried;
-        if aimed.distance(goal) > SAME {
+        if aimed.distance(goal) > SAME_PLACE_M {
             *checks = 0;
             corners.clear();
         }
@@ -94,7 +94,7 @@ impl<F: Copy> Route<F> {
             return route;
         }
         corners.clear();
-        let goes_on = *checks > 0 && began.distance(from) < SAME;
+        let goes_on = *checks > 0 && began.distance(from) < SAME_PLACE_M;
         match search.nodes.first_mut().filter(|_| goes_on) {
             Some(first) => {
                 first.at = from;
@@ -125,8 +125,8 @@ impl<F: Copy> Route<F> {
 }
 
 impl<F: Copy> Search<'_, F> {
-    /// The route along these corners, without the first one where it is passed; `None` where it is blocked, as
-    /// far as the effort tells.
+    /// The route along these corners, without the first one where it is passed; `None` where it is blocked,
+    /// as far as the effort tells.
     fn known(&mut self, start: Node<F>, corners: &mut Corners<F>) -> Option<Route<F>> {
         let behind = |corners: &Corners<F>| corners.iter().rev().nth(1).copied();
         let second = behind(corners).unwrap_or(self.goal);
@@ -411,7 +411,7 @@ fn around<F: Copy>(
 }
 
 /// A start and a goal that moved no farther are the same, m.
-const SAME: f32 = 0.1;
+const SAME_PLACE_M: f32 = 0.1;
 /// Most corners of a route that is kept.
 const CORNERS_MAX: usize = 5;
 /// Most turns that are tried from a corner.
