@@ -3,27 +3,71 @@
 //! units.
 
 use casebase::CaseBase;
-use geometry::{Attack, Point};
+use geometry::{Attack, Point, Vector};
+use motion::trajectory::CalcMotion;
 use protocol::{Duration, Instant, RobotId};
+use rules::{Phase, contact};
 
 use super::super::case_candidate;
 use super::super::order::{OrderReason, Role, Task};
+use super::super::pass::reach::Mover;
 use super::super::possession::{Arrival, Possession, arrival};
 use super::super::rated::{self, Action, OfCases, Rated, RatedList};
-use super::super::roles;
 use super::super::view::{View, ViewBall, ViewRobot};
+use super::super::{restart, roles, support, threat};
 use super::playable::is_left_to_the_keeper;
 use super::{Coach, Plan};
 
 /// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
 /// case.
 const CASE_PLAYER_BONUS_S: f32 = 0.5;
+/// A defender at our area's edge leaves it for an opponent with the ball only where it is sooner there than
+/// any other robot by this, s.
+const WALL_LEAVES_FOR_S: f32 = 0.4;
+/// A carrier is met where it will be after this time, s.
+const CARRIED_FOR_S: f32 = 0.3;
+/// An opponent this near the ball carries it, m.
+const CARRIES_WITHIN_M: f32 = 0.2;
+/// Distance from the ball to the centre of the robot that stands in its way, m: robots keep 0.35 m off the centre of one
+/// that moves (`brain`'s surroundings).
+const BLOCKS_AT_M: f32 = 0.28;
+/// This near the ball, m, a challenger takes it; with the carrier's body not before it: beside its way, by the cosine,
+/// or farther off than the ball by this, m.
+const TACKLES_WITHIN_M: f32 = 0.7;
+const OPEN_COS: f32 = 0.9;
+const OPEN_BY_M: f32 = 0.03;
+/// A robot in the way of a shot, by the cosine; from nearer to our goal than this an opponent shoots, m.
+const STANDS_COS: f32 = 0.85;
+const SHOOTS_WITHIN_M: f32 = 2.5;
+/// A carrier that may shoot faces our goal, by the cosine: within 45°.
+const FACES_COS: f32 = 0.7;
+/// A ball won from an opponent is pushed on by this, m.
+const CLEARED_M: f32 = 2.0;
+/// A second robot comes where the opponent has had the ball for this time, and it is there within this, s.
+const SECOND_AFTER: Duration = Duration::millis(300);
+const SECOND_WITHIN_S: f32 = 1.5;
+/// A robot this near another opponent marks it, m.
+const MARKS_WITHIN_M: f32 = 0.5;
+/// No pass is received nearer to our area, m: the ball that is missed there is a shot.
+const PASS_OFF_OUR_AREA_M: f32 = 0.5;
 /// Interval at which the list is rated.
 const RATED_EVERY: Duration = Duration::millis(50);
 /// A ball that moved by more than this is a new situation, m.
 const BALL_MOVED_M: f32 = 0.3;
 /// Another action is better by at least this: a robot that turns round loses half a second.
 const BETTER_BY_MIN: f32 = 0.02;
+/// A pass of a restart with a smaller P(receive) waits for a better one, for as long of the 5 s (A) that the rules give.
+const POOR_PASS_P: f32 = 0.4;
+const WAITS_FOR_BETTER: Duration = Duration::millis(3000);
+/// At a restart by this, more with every second of it, and by this share of it where what was chosen is poor.
+const RESTART_BETTER_BY: f32 = 0.05;
+const POOR_SHARE: f32 = 0.4;
+/// And by this share of what it is worth: places of equal worth do not alternate.
+const BETTER_BY_SHARE: f32 = 0.25;
+/// This soon before it touches the ball, s, a robot keeps its action until that is worth this much less than when it
+/// was chosen, and half of it.
+const LOCKED_WITHIN_S: f32 = 0.35;
+const FALLS_BY_MIN: f32 = 0.06;
 /// An action must be better than a running case by at least this, P(goal): its partners have gone to their
 /// places for it. 40 matches each with 0.02, 0.06 and 0.1: 38, 33 and 29 % of the cases were reassigned, and
 /// no difference in goals was seen (docs/strategy.md).
@@ -37,6 +81,8 @@ pub(super) struct Chosen {
     rated: Instant,
     pub(super) from: Point<Attack>,
     pub(super) action: Action,
+    /// What it was worth when it was chosen.
+    worth: f32,
 }
 
 /// Memory of open play by the rated list.
@@ -50,12 +96,14 @@ pub(super) struct RatedPlay {
     pub(super) chosen: Option<Chosen>,
     /// The list that it was chosen from.
     list: RatedList,
+    /// The second robot at an opponent that has the ball.
+    second: Option<RobotId>,
 }
 
 impl RatedPlay {
     /// Memory without a choice.
     pub(super) fn new(cases: CaseBase<'static>) -> Self {
-        Self { cases, possession: Possession::Free, chosen: None, list: RatedList::new() }
+        Self { cases, possession: Possession::Free, chosen: None, list: RatedList::new(), second: None }
     }
 
     /// Drops choice and possession when another phase starts.
@@ -78,6 +126,11 @@ impl Coach {
         self.order_double_touch_blocked(plan, &ball);
         self.order_uncovering(plan, &ball);
         self.see_pass_leave(view);
+        if let Possession::Theirs(opponent, since) = self.open_play.rated.possession
+            && !is_left_to_the_keeper(view, &ball)
+        {
+            return self.challenge(plan, &ball, (opponent, ball.position), since);
+        }
         let keepers = self.is_keepers(view, &ball);
         if let Some(at) = self.order_receiver(plan, &ball) {
             self.defend(plan, false);
@@ -90,7 +143,10 @@ impl Coach {
         }
         let first = self.first_at(view, plan, &ball);
         self.roles.ball_player = first.map(|(id, _)| id);
-        self.see_whose(view, &ball, first.map_or(f32::INFINITY, |(_, arrival)| arrival.seconds));
+        let first_seconds = first.map_or(f32::INFINITY, |(_, arrival)| arrival.seconds);
+        if let Some((opponent, at)) = self.see_whose(view, &ball, first_seconds) {
+            return self.challenge(plan, &ball, (opponent, at), view.now);
+        }
         if let Some((id, arrival)) = first
             && plan.take(id)
         {
@@ -104,6 +160,104 @@ impl Coach {
             plan.order(id, Role::Player, Task::Gameplay, why);
         }
         self.play_cases(plan);
+    }
+
+    /// One robot takes the ball off `opponent`, or stands before it on its way to our goal; where it shields the ball
+    /// a second one comes from the other side. The others defend.
+    fn challenge(
+        &mut self,
+        plan: &mut Plan<'_>,
+        ball: &ViewBall,
+        (opponent, has_at): (RobotId, Point<Attack>),
+        since: Instant,
+    ) {
+        let view = plan.view;
+        self.open_play.attacked = true;
+        self.open_play.rated.chosen = None;
+        if let Some(carrier) = view.theirs.iter().find(|robot| robot.id == opponent) {
+            let at = blocks_carrier(view, has_at, carrier);
+            let first = self.challenger(plan, at, self.roles.ball_player);
+            self.roles.ball_player = first.map(|robot| robot.id);
+            if let Some(robot) = first {
+                self.order_challenge(plan, ball, carrier, (robot, at, false));
+                let ahead = (ball.position - robot.position).unit().unwrap_or_default();
+                let behind = threat::legal(
+                    view,
+                    ball.position + ahead * BLOCKS_AT_M,
+                    &threat::ThreatSettings::default(),
+                );
+                let second = self.challenger(plan, behind, self.open_play.rated.second);
+                let second = second.filter(|robot| {
+                    let idle = view.theirs.iter().all(|other| {
+                        other.id == opponent || other.position.distance(robot.position) > MARKS_WITHIN_M
+                    });
+                    let limits = &self.passes.kicks().constants().receiver;
+                    let near = limits.time(robot.position, robot.velocity, behind) < SECOND_WITHIN_S;
+                    let wall = self.roles.defenders.contains(&Some(robot.id));
+                    idle && near && !wall && view.now.since(since) > SECOND_AFTER
+                });
+                self.open_play.rated.second = second.map(|robot| robot.id);
+                if let Some(robot) = second {
+                    self.order_challenge(plan, ball, carrier, (robot, behind, true));
+                }
+            }
+        }
+        self.defend(plan, true);
+        self.support_pass(plan, ball.position, None);
+    }
+
+    /// The free field player that is at `at` first; the wall is not thinned for a little time.
+    fn challenger<'v>(
+        &self,
+        plan: &Plan<'v>,
+        at: Point<Attack>,
+        held: Option<RobotId>,
+    ) -> Option<&'v ViewRobot> {
+        let view = plan.view;
+        let limits = self.passes.kicks().constants().receiver;
+        let may = |robot: &&ViewRobot| plan.free.contains(&robot.id) && robot.id != view.keeper;
+        let cost =
+            |robot: &ViewRobot| limits.time(robot.position, robot.velocity, at) + self.wall_stays(robot.id);
+        let (id, _) = roles::choose(view.ours.iter().filter(may), held, roles::WORTH, cost)?;
+        view.our(id)
+    }
+
+    /// Time by which a robot of the wall counts as later at a ball, s.
+    fn wall_stays(&self, id: RobotId) -> f32 {
+        if self.roles.defenders.contains(&Some(id)) { WALL_LEAVES_FOR_S } else { 0.0 }
+    }
+
+    /// Orders a challenger to its place, or, near the ball, to take that and clear it; `blocked`: another one stands
+    /// in the way of the carrier's shot.
+    fn order_challenge(
+        &self,
+        plan: &mut Plan<'_>,
+        ball: &ViewBall,
+        carrier: &ViewRobot,
+        (robot, at, blocked): (&ViewRobot, Point<Attack>, bool),
+    ) {
+        let view = plan.view;
+        if !plan.take(robot.id) {
+            return;
+        }
+        let off = ball.position - robot.position;
+        let to_carrier = carrier.position - robot.position;
+        // The carrier's body is not between.
+        let open = off.dot(to_carrier) < OPEN_COS * off.norm() * to_carrier.norm()
+            || off.norm() < to_carrier.norm() - OPEN_BY_M;
+        // Near our goal its shot is stood in the way of first.
+        let to_goal = view.our_goal() - ball.position;
+        let stands = -off.dot(to_goal) > STANDS_COS * off.norm() * to_goal.norm();
+        let heading = Vector::polar(1.0, carrier.heading);
+        let shoots = to_goal.norm() < SHOOTS_WITHIN_M && heading.dot(to_goal) > FACES_COS * to_goal.norm();
+        let open = open && (stands || !shoots || blocked);
+        let task = if off.norm() < TACKLES_WITHIN_M && open {
+            let kick = support::push_kick(CLEARED_M);
+            Task::Kick { at: ball.position + off.unit().unwrap_or_default() * CLEARED_M, kick }
+        } else {
+            Task::GoTo { at, face: at.direction_to(ball.position) }
+        };
+        plan.order(robot.id, Role::Player, task, OrderReason::Challenges { opponent: carrier.id });
     }
 
     /// The robot that plays the ball: who has it, else who is first behind it.
@@ -122,26 +276,27 @@ impl Coach {
         let bound = |robot: &ViewRobot| if view.in_play.has(robot.id) { CASE_PLAYER_BONUS_S } else { 0.0 };
         let soonest =
             roles::choose(view.ours.iter().filter(may), self.roles.ball_player, roles::WORTH, |robot| {
-                of(robot).seconds - bound(robot)
+                of(robot).seconds - bound(robot) + self.wall_stays(robot.id)
             });
         soonest.and_then(|(id, _)| view.our(id)).map(|robot| (robot.id, of(robot)))
     }
 
-    /// Updates whether the ball is theirs: they have it, or one of them is clearly sooner at it.
-    fn see_whose(&mut self, view: &View, ball: &ViewBall, ours: f32) {
-        self.open_play.attacked = match self.open_play.rated.possession {
-            Possession::Ours(..) => false,
-            Possession::Theirs(..) => true,
-            Possession::Contested(..) | Possession::Free => {
-                let limits = &self.passes.kicks().constants().opponent;
-                let goal = view.our_goal();
-                let theirs = view.theirs.iter().map(|robot| {
-                    arrival(robot, (ball, view), self.passes.kicks().ground(), limits, goal).seconds
-                });
-                let worth = if self.open_play.attacked { -roles::WORTH } else { roles::WORTH };
-                theirs.fold(f32::INFINITY, f32::min) + worth < ours
-            }
+    /// The opponent that will have the ball, and where, if it is clearly sooner at it than ours.
+    fn see_whose(&mut self, view: &View, ball: &ViewBall, ours: f32) -> Option<(RobotId, Point<Attack>)> {
+        let limits = &self.passes.kicks().constants().opponent;
+        let of = |robot: &ViewRobot| {
+            arrival(robot, (ball, view), self.passes.kicks().ground(), limits, view.our_goal())
         };
+        // Who took their restart may not touch it again.
+        let may = |robot: &&ViewRobot| self.pass.their_kicker != Some(robot.id);
+        let theirs = roles::choose(view.theirs.iter().filter(may), None, 0.0, |robot| of(robot).seconds);
+        let worth = if self.open_play.attacked { -roles::WORTH } else { roles::WORTH };
+        let sooner = theirs.filter(|(_, seconds)| {
+            self.open_play.rated.possession.owner().is_none() && seconds + worth < ours
+        });
+        self.open_play.attacked = sooner.is_some();
+        let robot = view.theirs.iter().find(|robot| sooner.is_some_and(|(id, _)| id == robot.id))?;
+        Some((robot.id, of(robot).ball))
     }
 
     /// The task of the best action; `None`: it plays on.
@@ -158,15 +313,26 @@ impl Coach {
         self.order_action(plan, &action)
     }
 
-    /// The kicker's task at our kick-off, by the same list; `None` where it has neither pass nor shot.
-    pub(super) fn rated_kickoff(
+    /// The kicker's task at our kick-off or free kick, by the same list; `None` where it has neither pass nor shot.
+    /// What is not likely to reach a mate waits while the seconds run, and mates move on.
+    pub(super) fn rated_restart(
         &mut self,
         plan: &mut Plan<'_>,
         who: RobotId,
         ball: &ViewBall,
     ) -> Option<(Task, OrderReason)> {
         let action = self.choose(plan, who, ball.position, false);
-        self.order_action(plan, &action)
+        let waits = matches!(plan.view.phase, Phase::FreeKick(_))
+            && is_poor(&action)
+            && self.age(plan.view) < WAITS_FOR_BETTER;
+        let (task, why) = self.order_action(plan, &action)?;
+        Some(match task {
+            Task::Pass { at, receiver, kick, .. } if waits => {
+                (Task::Pass { at, receiver, kick, ready: false }, why)
+            }
+            Task::Kick { .. } if waits => restart::take(plan.view, ball, None),
+            _ => (task, why),
+        })
     }
 
     /// The earlier choice, unless another action is clearly better now; whether it `may_play_on`: a ball that
@@ -206,7 +372,9 @@ impl Coach {
         let of_cases = OfCases { pass, retrieved };
         let mut list = rated::rate(view, &mut self.passes, who, from, of_cases);
         list.retain(|rated| match rated.action {
-            Action::Pass { receiver, .. } => receives(receiver),
+            Action::Pass { receiver, rating } => {
+                receives(receiver) && !view.in_our_area(rating.at, PASS_OFF_OUR_AREA_M)
+            }
             Action::PlayOn => may_play_on,
             _ => true,
         });
@@ -219,16 +387,49 @@ impl Coach {
         let is_of_case = |action| matches!(action, Action::Case(_) | Action::PlayOn);
         let better = match again {
             Some(again) if plays_case && is_of_case(again.action) => CASE_MARGIN,
-            _ => BETTER_BY_MIN,
+            // A kicker that turns round gives a marker beside the ball the time to follow.
+            Some(again) if view.phase != Phase::Run => {
+                let poor = if is_poor(&again.action) { POOR_SHARE } else { 1.0 };
+                RESTART_BETTER_BY * poor * (1.0 + self.age(view).as_secs_f32())
+            }
+            _ => BETTER_BY_MIN.max(BETTER_BY_SHARE * best.1.abs()),
         };
-        let (action, from) = match again {
-            Some(again) if best.1 < again.worth + better => (again.action, there.unwrap_or(from)),
-            _ => (best.0, from),
+        // At the ball it is only given up for a reason of its own.
+        let fell = |again: &Rated| {
+            kept.is_none_or(|chosen| again.worth < chosen.worth - FALLS_BY_MIN.max(0.5 * chosen.worth.abs()))
         };
-        self.open_play.rated.chosen = Some(Chosen { who, rated: view.now, from, action });
+        let locked = view.our(who).is_some_and(|robot| {
+            let mover = Mover::new(robot.position, robot.velocity, &self.passes.kicks().constants().receiver);
+            mover.time_to_touch(from, contact::TOUCHES_WITHIN) < LOCKED_WITHIN_S
+        });
+        let is_kept = |again: &Rated| best.1 < again.worth + better || locked && !fell(again);
+        let (action, from, worth) = match again.filter(is_kept) {
+            Some(again) => {
+                let worth = kept.map_or(again.worth, |chosen| chosen.worth.max(again.worth));
+                (again.action, there.unwrap_or(from), worth)
+            }
+            None => (best.0, from, best.1),
+        };
+        self.open_play.rated.chosen = Some(Chosen { who, rated: view.now, from, action, worth });
         self.open_play.rated.list = list;
         action
     }
+}
+
+/// A clearance, or a pass that is hardly received.
+fn is_poor(action: &Action) -> bool {
+    match action {
+        Action::Clear { .. } => true,
+        _ => action.pass().is_some_and(|(_, rating)| rating.receive() < POOR_PASS_P),
+    }
+}
+
+/// Place of a body before a carrier, on the line to our goal from where it will be soon.
+fn blocks_carrier(view: &View, has_at: Point<Attack>, carrier: &ViewRobot) -> Point<Attack> {
+    let carried = carrier.position.distance(has_at) < CARRIES_WITHIN_M;
+    let there = if carried { has_at + carrier.velocity * CARRIED_FOR_S } else { has_at };
+    let home = (view.our_goal() - there).unit().unwrap_or_default();
+    threat::legal(view, there + home * BLOCKS_AT_M, &threat::ThreatSettings::default())
 }
 
 #[cfg(test)]
@@ -238,7 +439,6 @@ mod tests {
     use super::super::super::view::tests::view;
     use super::*;
     use crate::strategy::Team;
-    use geometry::Vector;
     use motion::ball::BallModel;
     use rand_core::{RngCore, SeedableRng};
     use rand_xoshiro::Xoshiro128PlusPlus;
