@@ -178,3 +178,40 @@ impl<'v> Rating<'v> {
         self.release.worth(at, past * there + (1.0 - past) * on_the_way)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::view::tests::view;
+    use super::*;
+    use rules::League;
+
+    #[test]
+    fn a_clearance_goes_away_from_our_goal_past_opponents_and_our_own_bodies() {
+        let kicks = Kicks::of(League::DivisionB);
+        let ours = [(-4.3, 0.0), (-3.37, 0.1), (-3.37, -0.1), (-1.5, 2.0)];
+        let view = view((-4.15, 0.0), &ours, &[(-2.8, 0.0), (-2.5, -1.0)]);
+        let from = Point::new(-4.15, 0.0);
+        let found = clearance(&view, &kicks, &view.ours[0], from, |_| true).unwrap();
+        let ray = (found.at - from).unit().unwrap();
+        assert!(ray.x() > BACK_MAX, "{found:?}");
+        let flies = if matches!(found.kick, KickOrder::Chip(_)) { CHIP_RISES_M } else { FLAT_LENGTH_M };
+        let way = Segment::new(from, from + ray * flies);
+        assert!(
+            view.ours[1..].iter().all(|robot| way.distance_to(robot.position) > PASSES_BY_M),
+            "{found:?}"
+        );
+        assert_eq!(clearance(&view, &kicks, &view.ours[0], from, |_| false), None);
+    }
+
+    #[test]
+    fn what_is_released_late_under_an_opponent_is_worth_less() {
+        let kicks = Kicks::of(League::DivisionB);
+        let from = Point::new(-3.0, 1.5);
+        let mut view = view((-3.0, 1.5), &[(-4.4, 0.0), (-3.12, 1.5)], &[(-2.4, 1.5)]);
+        let lost = |view: &View, at| Release::of(view, &kicks, &view.ours[1], from).lost(at);
+        let (ahead, back) = (Point::new(0.0, 1.5), Point::new(-4.4, 1.4));
+        assert!(lost(&view, ahead) + 0.2 < lost(&view, back));
+        view.phase = Phase::FreeKick(rules::Side::Ours);
+        assert_eq!(lost(&view, back), 0.0, "nobody may come before the kick");
+    }
+}

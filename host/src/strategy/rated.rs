@@ -346,6 +346,19 @@ mod tests {
     }
 
     #[test]
+    fn a_shot_from_our_half_is_worth_less_than_clearing_the_ball() {
+        let view = view((-3.2, 1.4), &[(-4.4, 0.0), (-3.3, 1.4), (-1.0, -1.0)], &[(4.4, 0.0), (-2.4, 1.6)]);
+        let passes = &mut PassSearch::new(kicks(), 1);
+        let list = rate(&view, passes, view.ours[1].id, Point::new(-3.2, 1.4), OfCases::default());
+        let worth =
+            |which: fn(&Action) -> bool| list.iter().find(|rated| which(&rated.action)).map(|r| r.worth);
+        let clear = worth(|action| matches!(action, Action::Clear { .. })).unwrap();
+        let shot = worth(|action| matches!(action, Action::Shot { .. }));
+        assert!(shot.is_none_or(|shot| shot < clear), "{list:?}");
+        assert!(!matches!(list[0].action, Action::Shot { .. }), "{list:?}");
+    }
+
+    #[test]
     fn the_pass_of_a_case_is_rated_as_any_other_to_that_place() {
         let at = Point::new(3.0, 1.6);
         let list = list((3.0, 1.8), &WALL, Some(at));
@@ -356,6 +369,8 @@ mod tests {
         let kicks = kicks();
         let scene = PassScene::of(&view, &kicks, Point::new(2.0, 0.0), Some(view.ours[1].id), &view.ours[2]);
         let same = pass_worth(&view, Point::new(2.0, 0.0), &scene.keeping().rate(rating.at));
+        let release = Release::of(&view, &kicks, &view.ours[1], Point::new(2.0, 0.0));
+        let same = release.worth(rating.at, same);
         assert!((same - of_case.worth).abs() < 1e-6, "{same} {}", of_case.worth);
     }
 

@@ -194,7 +194,7 @@ impl Coach {
         let free_kick = matches!(view.phase, Phase::FreeKick(_));
         let wait = if free_kick { AIMED_AFTER } else { Duration(0) };
         if self.tactics.rated
-            && (free_kick || matches!(view.phase, Phase::Kickoff(_)))
+            && (free_kick && !self.tactics.pass_ahead || matches!(view.phase, Phase::Kickoff(_)))
             && self.age(view) >= wait
             && let Some((task, why)) = self.rated_restart(plan, id, &ball)
         {
