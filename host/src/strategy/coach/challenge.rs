@@ -154,7 +154,9 @@ impl Coach {
         let open = open && (stands || !shoots || blocked);
         let task = if off.norm() < TACKLES_WITHIN_M && open {
             let kick = support::push_kick(CLEARED_M);
-            Task::Kick { at: ball.position + off.unit().unwrap_or_default() * CLEARED_M, kick }
+            // Never towards our own goal line.
+            let ray = Vector::new(off.x().abs(), off.y()).unit().unwrap_or_default();
+            Task::Kick { at: ball.position + ray * CLEARED_M, kick }
         } else {
             Task::GoTo { at, face: at.direction_to(ball.position) }
         };
@@ -180,7 +182,7 @@ mod tests {
     use rules::League;
 
     const OURS: [(f32, f32); 6] =
-        [(-4.4, 0.0), (-3.3, 0.3), (-3.3, -0.3), (-2.2, 1.3), (0.5, 1.5), (0.5, -1.5)];
+        [(-4.4, 0.0), (-3.3, 0.3), (-3.3, -0.3), (-2.6, 1.1), (0.5, 1.5), (0.5, -1.5)];
 
     /// Orders against an opponent at `carrier` that faces our goal with the ball before it.
     fn against(carrier: (f32, f32)) -> (View, Orders) {
