@@ -3,11 +3,11 @@
 use arena::game::{Game, GameConfig, Watcher};
 use geometry::{Field, Point};
 use hil_sim::NativeBackend;
-use hil_sim::small_size::WorldChoice;
+use hil_sim::small_size::worlds::WorldChoice;
 use host::tracking::{Tracker, TrackingSettings};
-use prost::Message as _;
 use protocol::Instant;
 use rules::{FieldSpec, League};
+use ssl::Message as _;
 use ssl::vision::{DetectionBall, WrapperPacket};
 
 /// A ball farther from the true one is another, m: more than a fast kick covers in a late camera frame.

@@ -5,6 +5,7 @@
 use std::collections::BTreeSet;
 use std::io::{BufRead as _, BufReader, Read, Write as _};
 use std::net::TcpStream;
+use std::os::unix::process::CommandExt as _;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
@@ -91,7 +92,12 @@ impl Terminal {
         } else {
             command.args(["-c", line]);
         }
-        command.current_dir(root()).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+            .process_group(0)
+            .current_dir(root())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
         let mut child = command.spawn().expect("it starts");
         let (send, output) = channel();
         let pipes: [Box<dyn Read + Send>; 2] =
@@ -132,16 +138,24 @@ impl Terminal {
     }
 }
 
+impl Terminal {
+    /// Sends a signal to the command and all that it has started.
+    fn signal(&self, name: &str) {
+        let group = format!("-{}", self.child.id());
+        let _ = Command::new("kill").args([name, "--", &group]).stderr(Stdio::null()).status();
+    }
+}
+
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // As Ctrl-C does; then, where it does not listen, without asking. It may have ended by itself.
-        let _ =
-            Command::new("kill").args(["-INT", &self.child.id().to_string()]).stderr(Stdio::null()).status();
+        // As Ctrl-C does, to the command and what it has started; then, where it does not listen, without
+        // asking. It may have ended by itself.
+        self.signal("-INT");
         let until = Instant::now() + Duration::from_secs(10);
         while Instant::now() < until && matches!(self.child.try_wait(), Ok(None)) {
             thread::sleep(LOOK_PERIOD);
         }
-        let _ = self.child.kill();
+        self.signal("-KILL");
         let _ = self.child.wait();
     }
 }

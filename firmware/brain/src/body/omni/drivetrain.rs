@@ -121,7 +121,8 @@ impl Drivetrain {
         let velocity = match towards {
             Some(to) if self.path_age <= PATH_AGE_MAX => {
                 let from = belief.pose.position + self.moves_on;
-                limits(belief, &drive).plan(from, self.velocity, to).at(step).velocity
+                let next = limits(belief, &drive).plan(from, self.velocity, to).at(step).velocity;
+                if belief.is_placing() { next } else { short_of_bodies(belief, next) }
             }
             _ => self.braked(step),
         };
@@ -147,17 +148,21 @@ impl Drivetrain {
         let mut around = Surroundings::none(&field);
         around.look(belief, &field, drive.to, drive.mode);
         let effort = self.effort(belief, drive);
-        // Other robots come last: where the effort is too small for all, the drive only slows down for them.
         let search = |obstacles: usize| avoid::effort_least(obstacles) + EFFORT_OF_SEARCH;
+        // Too little for all that is around: the path of a few steps before has looked at all of it.
+        if effort < search(around.obstacles.len())
+            && path_age < PATH_AGE_MAX
+            && let Some(path) = under_way.filter(|path| path.towards.is_some())
+        {
+            self.path_age = path_age;
+            return self.keep_path(belief, step, CurrentPath { drive: *drive, ..path });
+        }
+        // Other robots come last: where the effort is too small for all, the drive only slows down for them.
         while around.obstacles.len() > around.fixed && effort < search(around.obstacles.len()) {
             around.obstacles.pop();
         }
         if effort < avoid::effort_least(around.obstacles.len()) {
-            self.path_age = path_age;
-            return match under_way {
-                Some(path) => self.keep_path(belief, step, CurrentPath { drive: *drive, ..path }),
-                None => self.stand(belief, step, Some(drive.face)),
-            };
+            return self.stand(belief, step, Some(drive.face));
         }
         let course = Course {
             from,
