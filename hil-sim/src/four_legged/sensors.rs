@@ -190,7 +190,7 @@ mod tests {
         let lengths =
             [model::MARKER_SIZE, model::GOAL_SIZE, model::RANGE_FLOOR, model::PLACING, model::REPORTED];
         assert_eq!(lengths, [noise.marker, noise.goal, noise.range_floor, noise.placing, noise.localisation]);
-        let legs = [model::SLIP, model::SLIP_TIME, model::SCALE, model::SWAY_TIME, model::STANDS];
+        let legs = [model::SLIP, model::SLIP_TIME, model::SCALE, model::SWAY_TIME, model::STANDSTILL_SPEED];
         let world =
             [noise.odometry_slip, noise.slip_time, noise.odometry_scale, noise.sway_time, STANDING_SPEED_MAX];
         assert_eq!(legs, world);
