@@ -157,10 +157,8 @@ impl Drivetrain {
             self.path_age = path_age;
             return self.keep_path(belief, step, CurrentPath { drive: *drive, ..path });
         }
-        // Other robots come last: where the effort is too small for all, the drive only slows down for them.
-        while around.obstacles.len() > around.fixed && effort < search(around.obstacles.len()) {
-            around.obstacles.pop();
-        }
+        // Where the effort is too small for all robots the drive only slows down for those far away.
+        while effort < search(around.obstacles.len()) && around.leave_out_farthest(from) {}
         if effort < avoid::effort_least(around.obstacles.len()) {
             return self.stand(belief, step, Some(drive.face));
         }

@@ -108,6 +108,17 @@ impl Surroundings {
         let _ = self.obstacles.push(obstacle);
     }
 
+    /// Leaves out the robot that is farthest from `me`; `false` where none is left.
+    pub fn leave_out_farthest(&mut self, me: Point<Field>) -> bool {
+        let away = |obstacle: &Obstacle<Field>| match obstacle.shape {
+            Shape::Disc { center, .. } => center.distance(me),
+            Shape::Box { .. } | Shape::Capsule { .. } => 0.0,
+        };
+        let robots = self.obstacles.iter().enumerate().skip(self.fixed);
+        let farthest = robots.max_by(|(_, a), (_, b)| away(a).total_cmp(&away(b))).map(|(i, _)| i);
+        farthest.map(|i| self.obstacles.swap_remove(i)).is_some()
+    }
+
     fn add_goal(&mut self, field: &FieldSpec, goal: GoalEnd) {
         let (line, sign) = (field.goal_line(goal), goal.sign() as f32);
         let (back, half) = (line + sign * (field.goal_depth + field.goal_wall), 0.5 * field.goal_width);
