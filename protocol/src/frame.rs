@@ -219,6 +219,11 @@ pub fn claimed_sender(bytes: &[u8]) -> Option<Sender> {
     }
 }
 
+/// Whether a frame claims to be the host's to several robots, by its header alone; nothing is checked.
+pub fn claims_audience(bytes: &[u8]) -> bool {
+    bytes.get(SENDER_AT) == Some(&HOST_TO_SEVERAL)
+}
+
 /// Offset of the sender: after version and team.
 const SENDER_AT: usize = 2;
 

@@ -348,6 +348,8 @@ impl Condition {
     pub const GOVERNED: Self = Self(1 << 4);
     /// The host has been silent for too long: the robot brakes.
     pub const LINK_LOST: Self = Self(1 << 5);
+    /// In the last second more packets came than it had time to open; the host's come first.
+    pub const FLOODED: Self = Self(1 << 6);
 
     /// Union of both sets.
     #[must_use]

@@ -8,7 +8,9 @@
 //! (unauthenticated peer). The host's frames are refused as [`Refusal::Stale`] when they are older than
 //! [`AGE_MAX`](crate::host_clock::AGE_MAX).
 
-use crate::frame::{Frame, FrameBytes, Refusal, RobotKeys, Sender, Sessions, TeamKeys, decode, packet};
+use crate::frame::{
+    Frame, FrameBytes, HEADER_LEN, Refusal, RobotKeys, Sender, Sessions, TeamKeys, VERSION, decode, packet,
+};
 use crate::host::{HostMessage, PARTS_MAX, Telemetry, WorldPart};
 use crate::host_clock::{Age, HostClock, ticks};
 use crate::peer::PeerTable;
@@ -96,6 +98,14 @@ impl Link {
             count(&mut self.refused, refusal);
         }
         opened
+    }
+
+    /// Whether a packet is the host's to another robot of the team, by its first bytes: opening it has no
+    /// effect.
+    pub fn is_to_another(&self, packet: &[u8]) -> bool {
+        let Some((head, rest)) = packet.split_first_chunk::<HEADER_LEN>() else { return false };
+        let host = Sender::Host.number();
+        head.starts_with(&[VERSION, self.team.0, host]) && !HostMessage::is_to_one(rest, self.me)
     }
 
     /// The epoch of the trusted host, if there is one; when it changes, numbers of the last host's frames are

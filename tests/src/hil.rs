@@ -11,10 +11,6 @@ use hil_sim::{ByTeam, McuError, Meter, Metered, NativeBackend, QemuBackend};
 use protocol::TeamId;
 use rules::{Colour, League};
 
-/// Maximum guest instructions of a step in longer matches, and of robots other than the default one: of 60 s,
-/// the worst of twelve robots' 72,000 steps took 42,551 (docs/firmware.md).
-pub const WORST_OF_LONG: u32 = 45_000;
-
 /// Selects one of the two matches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {

@@ -12,6 +12,7 @@ use std::sync::LazyLock;
 use arena::Profile;
 use arena::{CaseNames, TrialConfig, TrialReport, run};
 use brain::{Approach, BrainConfig};
+use firmware_build::inspect::{STACK_BUDGET, STEP_BUDGET};
 use hil_sim::{
     AirSettings, Backend, Configuration, Fault, McuError, Metered, NativeBackend, QemuBackend, Scenario,
     ScheduledFault,
@@ -20,9 +21,6 @@ use protocol::{RobotId, TeamId};
 
 /// Number of seeds of each scenario and configuration of the paper.
 const SEEDS: u64 = 5;
-const STEP_BUDGET: u32 = firmware_build::inspect::STEP_BUDGET;
-/// Bytes of stack, painted (docs/architecture.md §9).
-const STACK_BUDGET: u32 = firmware_build::inspect::STACK_BUDGET;
 
 #[test]
 fn native_equals_qemu() {

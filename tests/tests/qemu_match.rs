@@ -6,8 +6,7 @@
 //! longer. Needs QEMU and a compiler for the target.
 
 use firmware_build::inspect::{STACK_BUDGET, STEP_BUDGET};
-use match_tests::hil::{Pair, WORST_OF_LONG};
-use rules::RobotSpec;
+use match_tests::hil::Pair;
 
 /// Default length in simulated seconds: kick-off and the first duels.
 const SECONDS: f64 = 4.0;
@@ -24,9 +23,7 @@ fn six_images_in_lockstep_play_the_match_that_six_native_brains_play() {
     println!("{reported}");
     assert!(reported.ticks as f64 >= 100.0 * seconds.unwrap_or(SECONDS) - 1.0, "{reported}");
     let worst = reported.worst_instructions;
-    let short = seconds.is_none() && RobotSpec::SOURCE == "ours";
-    let budget = if short { STEP_BUDGET } else { WORST_OF_LONG };
-    assert!((1..=budget).contains(&worst), "the worst step took {worst} instructions");
+    assert!((1..=STEP_BUDGET).contains(&worst), "the worst step took {worst} instructions");
     let stack = reported.worst_stack;
     assert!((1..=STACK_BUDGET).contains(&stack), "{stack} B of stack");
 }

@@ -9,45 +9,30 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use brain::BrainConfig;
+use firmware_build::inspect::{STACK_BUDGET, STEP_BUDGET};
 use geometry::{Field, GoalEnd, Point, Pose, Twist, Vector};
 use hil_sim::small_size::{Ball, Drive, Order, Parameters, World};
 use hil_sim::{Backend, Mcu, Meter, NativeBackend, QemuBackend};
-use protocol::frame::{Audience, TeamKey};
+use protocol::frame::{Audience, Frame, TeamKey};
 use protocol::host::{
     Directive, HostCommand, HostMessage, KickOrder, PART_ROBOTS_MAX, RuleRole, Welcome, WireBall, WireRobot,
     WireWho, WorldPart,
 };
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
-use protocol::lockstep::TickIn;
+use protocol::lockstep::{AIR_IN_BYTES_MAX, AIR_IN_MAX, TickIn};
 use protocol::quantized::{WirePoint, WirePose, to_mm};
 use protocol::team::TeamMessage;
 use protocol::{Instant, RobotId, TeamId, Who};
-use rules::{Colour, League, Phase, RobotSpec, Side};
+use rules::{Colour, League, Phase, Side};
 
-/// Instructions of a step: the budget for the default robot, for others what longer matches are held to.
-const STEP_BUDGET: u32 =
-    if DEFAULT { firmware_build::inspect::STEP_BUDGET } else { match_tests::hil::WORST_OF_LONG };
-/// The robot of this build is the one that the simulator's worlds are written for.
-const DEFAULT: bool = matches!(RobotSpec::SOURCE.as_bytes(), b"ours");
-/// Budget of the stack, measured by painting, bytes.
-const STACK_BUDGET: u32 = firmware_build::inspect::STACK_BUDGET;
 /// Duration of each of the parts below, s.
 const SECONDS: u64 = 6;
 
 #[test]
 fn wheeled_robots_under_qemu_equal_native_within_the_step_budget() {
-    let base = case_library::division_b();
     let mut table = Table::new();
-    let mut native = NativeBackend::new(base);
-    let mut emulated = QemuBackend::new(&*IMAGE).with_library(base.bytes()).expect("room for it");
-    let mut robots: Vec<_> = (1..=3)
-        .map(|number| {
-            let config = BrainConfig::hosted(id(number), TeamId(1), League::DivisionB);
-            let boot = |backend: &mut dyn Backend<'static>| backend.boot(&config).expect("boots");
-            (id(number), [boot(&mut native), boot(&mut emulated)])
-        })
-        .collect();
+    let mut robots = robots();
     let mut steps = Vec::new();
     let meter = Meter::default();
     for (phase, directives) in parts() {
@@ -69,6 +54,49 @@ fn wheeled_robots_under_qemu_equal_native_within_the_step_budget() {
     );
     assert!((1..=STACK_BUDGET).contains(&stack), "{stack} B of stack");
     assert!((1..=STEP_BUDGET).contains(&worst), "the worst step took {worst} instructions");
+}
+
+#[test]
+fn a_flood_of_packets_keeps_every_step_within_its_budget() {
+    let mut table = Table::new();
+    let mut robots = robots();
+    let play = [const { Directive::Gameplay { hint: None } }; 3];
+    for flood in [None, Some(Flood::Elsewhere), Some(Flood::Beacons), Some(Flood::ForgedHost)] {
+        table.flood = flood;
+        let (mut steps, meter) = (Vec::new(), Meter::default());
+        for _ in 0..300 {
+            table.tick(Phase::Run, &play, &mut robots, &mut steps, &meter);
+        }
+        steps.sort_unstable();
+        let (median, worst) = (steps[steps.len() / 2], steps[steps.len() - 1]);
+        println!("{flood:?}: median {median}, worst {worst} instructions");
+        assert!((1..=STEP_BUDGET).contains(&worst), "{flood:?}: the worst step took {worst} instructions");
+        assert!((1..=STACK_BUDGET).contains(&meter.stack()), "{flood:?}: {} B of stack", meter.stack());
+    }
+}
+
+/// Packets that fill the radio's time.
+#[derive(Clone, Copy, Debug)]
+enum Flood {
+    /// The host's commands to another robot.
+    Elsewhere,
+    /// Beacons in teammates' names with a stolen robot's key, each newer than the last.
+    Beacons,
+    /// Snapshots that claim to be the host's.
+    ForgedHost,
+}
+
+/// Three robots, each native and as an image.
+fn robots() -> Vec<(RobotId, [Box<dyn Mcu + 'static>; 2])> {
+    let base = case_library::division_b();
+    let mut native = NativeBackend::new(base);
+    let mut emulated = QemuBackend::new(&*IMAGE).with_library(base.bytes()).expect("room for it");
+    let boot = |number| {
+        let config = BrainConfig::hosted(id(number), TeamId(1), League::DivisionB);
+        let boot = |backend: &mut dyn Backend<'static>| backend.boot(&config).expect("boots");
+        (id(number), [boot(&mut native), boot(&mut emulated)])
+    };
+    (1..=3).map(boot).collect()
 }
 
 /// Phases, and the directives of the three robots in them.
@@ -105,6 +133,9 @@ struct Table {
     link: HostLink,
     air: Vec<(RobotId, Packet)>,
     ticks: u32,
+    flood: Option<Flood>,
+    /// A beacon of each robot, as it was sent last.
+    beacons: Vec<(RobotId, Packet)>,
 }
 
 impl Table {
@@ -123,7 +154,7 @@ impl Table {
         let mut link = HostLink::new(TeamId(1), TeamKey::ZERO, 1);
         // As many tags as in a match of six.
         link.set_audience(Audience(0b111_1110));
-        Self { world, link, air: Vec::new(), ticks: 0 }
+        Self { world, link, air: Vec::new(), ticks: 0, flood: None, beacons: Vec::new() }
     }
 
     fn tick(
@@ -163,6 +194,7 @@ impl Table {
             packets.push(self.link.seal(now, &HostMessage::Command(command)));
             packets
                 .extend(received.iter().filter(|(from, _)| from != robot).map(|(_, packet)| packet.clone()));
+            packets.splice(0..0, self.flooded(*robot, now, &packets));
             let sensors = self.world.sensors(ours(*robot)).expect("a robot");
             let tick = TickIn { seq, now, air: packets.iter().map(|p| &p[..]).collect(), sensors };
             let [native, emulated] = computers;
@@ -177,6 +209,10 @@ impl Table {
             for packet in a.packets {
                 let opened = self.link.open(now, &packet);
                 if let Ok(Opened::Believed(_, TeamMessage::Beacon(_) | TeamMessage::Handshake(_))) = opened {
+                    if let Ok(Opened::Believed(_, TeamMessage::Beacon(_))) = opened {
+                        self.beacons.retain(|(from, _)| from != robot);
+                        self.beacons.push((*robot, packet.clone()));
+                    }
                     self.air.push((*robot, packet));
                 }
             }
@@ -190,6 +226,42 @@ impl Table {
         for _ in 0..10 {
             self.world.step();
         }
+    }
+
+    /// What floods the air before these packets for `robot`, as far as a tick has room.
+    fn flooded(&mut self, robot: RobotId, now: Instant, genuine: &[Packet]) -> Vec<Packet> {
+        let Some(flood) = self.flood else { return Vec::new() };
+        let mut room = AIR_IN_BYTES_MAX - genuine.iter().map(|packet| packet.len()).sum::<usize>();
+        let mut packets = Vec::new();
+        for number in genuine.len()..AIR_IN_MAX {
+            let packet = match flood {
+                Flood::Elsewhere => {
+                    let directive = Directive::Gameplay { hint: None };
+                    let (phase, rule_role) = (Phase::Run, RuleRole::Player);
+                    let command =
+                        HostCommand { to: id(9), defending: GoalEnd::Negative, phase, rule_role, directive };
+                    self.link.seal(now, &HostMessage::Command(command))
+                }
+                Flood::Beacons => {
+                    let of_others: Vec<_> = self.beacons.iter().filter(|(from, _)| *from != robot).collect();
+                    let Some((_, beacon)) = of_others.get(number % of_others.len().max(1)) else { break };
+                    let frame = Frame::parse(beacon, TeamId(1)).expect("a frame");
+                    let counter = 1_000_000 + self.ticks * 64 + number as u32;
+                    Frame { counter, ..frame }.emit(&TeamKey::ZERO.of_robot(robot).team).expect("fits")
+                }
+                Flood::ForgedHost => {
+                    let Some(first) = genuine.iter().find(|packet| packet.len() > 100) else { break };
+                    let mut forged = first.clone();
+                    // In the payload.
+                    forged[40] ^= 1 + number as u8;
+                    forged
+                }
+            };
+            let Some(left) = room.checked_sub(packet.len()) else { break };
+            room = left;
+            packets.push(packet);
+        }
+        packets
     }
 
     /// The snapshot, sealed.

@@ -7,17 +7,21 @@ use std::collections::VecDeque;
 use brain::{BrainConfig, Station};
 use geometry::{Pose, Twist, Vector};
 use hil_sim::Stream;
-use host::radio::{Radio, RadioSettings, RadioWarning, Relay};
+use host::radio::{Radio, RadioSettings, RadioSituation, RadioWarning, Relay};
 use match_tests::led_robot::{RUNNING, blind_sensors, drive_on, standing};
-use protocol::frame::{Frame, Refusal, RobotKeys, TeamKey};
-use protocol::link::Packet;
+use protocol::frame::{Frame, Key, Refusal, RobotKeys, Sender, TeamKey};
+use protocol::host::{HostCommand, HostMessage};
+use protocol::link::{Link, Packet};
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
+use protocol::team::{Handshake, TeamMessage};
 use protocol::{Duration, Instant, RobotId, TeamId};
-use rules::League;
+use rules::{League, Phase, Side};
 
 const KEY: TeamKey = TeamKey([0x3c; 16]);
 const TEAM: TeamId = TeamId(1);
 const TICK_MS: u64 = 10;
+/// Packets that the radio carries in a tick at most: 1,250 a second (protocol/SPEC.md).
+const FULL_RATE: usize = 13;
 
 fn id() -> RobotId {
     RobotId::new(3).unwrap()
@@ -112,8 +116,14 @@ impl Body {
 
 /// A command to drive to a position that is never reached.
 fn offer(radio: &mut Radio, now: u64) -> Vec<Packet> {
+    offer_in(radio, now, Phase::Run)
+}
+
+/// As [`offer`], in a phase of the game.
+fn offer_in(radio: &mut Radio, now: u64, phase: Phase<Side>) -> Vec<Packet> {
     let world = standing(ms(now), [(id(), Pose::default())]);
-    radio.offer(ms(now), &world, RUNNING, &[drive_on(id())]);
+    let command = HostCommand { phase, ..drive_on(id()) };
+    radio.offer(ms(now), &world, RadioSituation { phase, ..RUNNING }, &[command]);
     std::iter::from_fn(|| radio.poll_packet()).map(|(_, packet)| packet).collect()
 }
 
@@ -312,27 +322,92 @@ fn a_stolen_robots_keys_control_no_other_robot() {
     let stolen: Vec<RobotKeys> =
         RobotId::all().filter(|other| *other != id()).map(|n| KEY.of_robot(n)).collect();
     // The host stops; the attacker sends its recordings with newer counters under every key that the stolen
-    // robot has.
+    // robot has, as fast as the radio carries them.
     let mut forged = 0;
     let driving = game.body.speed;
     for n in 0..300_u32 {
-        game.now += TICK_MS;
-        let mut packets = Vec::new();
         for packet in &genuine {
             let frame = Frame::parse(packet, TEAM).unwrap();
-            let counter = (game.now * 1_000 / 64) as u32;
-            for keys in &stolen {
-                for key in [&keys.host, &keys.team] {
-                    let frame = Frame { counter: counter + n % 7, audience: None, ..frame };
-                    packets.push(frame.emit(key).unwrap());
-                }
+            let keys: Vec<_> = stolen.iter().flat_map(|keys| [&keys.host, &keys.team]).collect();
+            for keys in keys.chunks(FULL_RATE) {
+                game.now += TICK_MS;
+                let counter = (game.now * 1_000 / 64) as u32 + n % 7;
+                let emit = |key: &&Key| Frame { counter, audience: None, ..frame }.emit(key).unwrap();
+                let packets: Vec<_> = keys.iter().map(emit).collect();
+                forged += packets.len();
+                game.body.step(game.now, &packets);
             }
         }
-        forged += packets.len();
-        game.body.step(game.now, &packets);
     }
     assert!(driving > 0.5 && game.body.speed == 0.0, "{} m/s", game.body.speed);
     assert!(forged > 10_000 && game.body.refused(Refusal::Tag) > 5_000);
+    // Those for which a step has no time are counted too.
+    let unopened = game.body.station.brain().unopened();
+    assert_eq!((unopened + game.body.refused(Refusal::Tag)) as usize, forged / genuine.len());
+}
+
+#[test]
+fn halt_is_obeyed_in_time_under_a_flood_at_the_radios_full_rate() {
+    // Commands to others and genuine beacons delay HALT by no step. Forgeries in the host's name come before
+    // each of its frames: the robot stops as it does without a host (docs/firmware.md).
+    let floods: [(&str, fn(u64) -> Vec<Packet>, u64, u64); 3] = [
+        ("elsewhere", commands_to_others, 20, 620),
+        ("teammates", teammates_handshakes, 20, 620),
+        ("forged", forged_commands, 120, 700),
+    ];
+    for (name, flood, brakes_within, stands_within) in floods {
+        let mut game = Match::new(Body::new(5), (3, 3), 0.0);
+        game.drive();
+        let (start, driving) = (game.now, game.body.speed);
+        let (mut brakes, mut stands) = (None, None);
+        for _ in 0..100 {
+            game.now += TICK_MS;
+            let mut packets = flood(game.now);
+            packets.extend(game.down.receive(game.now));
+            game.body.step(game.now, &packets);
+            for packet in offer_in(&mut game.radio, game.now, Phase::Halt) {
+                game.down.send(game.now, packet);
+            }
+            let after = game.now - start;
+            if game.body.speed < driving - 0.02 {
+                brakes = brakes.or(Some(after));
+            }
+            stands = if game.body.speed == 0.0 { stands.or(Some(after)) } else { None };
+        }
+        println!("{name}: at {driving} m/s, brakes after {brakes:?} ms, stands after {stands:?} ms");
+        assert!(brakes.is_some_and(|after| after <= brakes_within), "{name}: {brakes:?} ms");
+        assert!(stands.is_some_and(|after| after <= stands_within), "{name}: {stands:?} ms");
+    }
+}
+
+/// Commands of the host to a robot that is not this one, as many as a step's time on the air carries.
+fn commands_to_others(now: u64) -> Vec<Packet> {
+    let other = RobotId::new(9).unwrap();
+    commands(now, other, &KEY.of_robot(other))
+}
+
+/// Commands to this robot that a stolen robot has forged.
+fn forged_commands(now: u64) -> Vec<Packet> {
+    commands(now, id(), &KEY.of_robot(RobotId::new(9).unwrap()))
+}
+
+fn commands(now: u64, to: RobotId, keys: &RobotKeys) -> Vec<Packet> {
+    let mut payload = [0; 64];
+    let payload = postcard::to_slice(&HostMessage::Command(drive_on(to)), &mut payload).unwrap();
+    let frame = |n| {
+        let counter = (now * 1_000 / 64) as u32 + n;
+        let frame = Frame { team: TEAM, sender: Sender::Host, audience: None, epoch: 70, counter, payload };
+        frame.emit(&keys.host).unwrap()
+    };
+    (0..FULL_RATE as u32).map(frame).collect()
+}
+
+/// Handshakes of teammates, each with a genuine tag.
+fn teammates_handshakes(now: u64) -> Vec<Packet> {
+    let others = RobotId::all().filter(|other| *other != id()).take(FULL_RATE);
+    let handshake = TeamMessage::Handshake(Handshake { teammates: heapless::Vec::new() });
+    let seal = |other: RobotId| Link::new(TEAM, other, KEY.of_robot(other), now as u32).seal(&handshake);
+    others.map(seal).collect()
 }
 
 #[test]

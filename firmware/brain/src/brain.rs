@@ -11,7 +11,7 @@ mod telemeter;
 use casebase::{CaseBase, Problem};
 use protocol::host::HostMessage;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
-use protocol::team::{PRESENCE_LEASE, TeamMessage};
+use protocol::team::{Decision, PRESENCE_LEASE, TeamMessage};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
 use crate::belief::Belief;
@@ -32,12 +32,25 @@ use telemeter::Spoken;
 /// Inputs since the last step, besides time.
 #[derive(Clone, Copy, Debug, Default)]
 struct Since {
-    /// Number of frames received from teammates and host.
-    received: u8,
+    /// Instructions that they took, by estimate.
+    effort: u32,
+    /// Those of them that the host's packets took.
+    host_effort: u32,
     /// Whether it has retrieved.
     retrieved: bool,
     /// A gameplay has started or ended.
     gameplay_changed: bool,
+}
+
+/// Kind of a packet, by its header.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PacketKind {
+    /// The host's to this robot.
+    Command,
+    /// The host's to several robots.
+    Snapshot,
+    /// A teammate's, or anything else.
+    Beacon,
 }
 
 /// A robot's brain: sans-IO, all times are arguments.
@@ -69,6 +82,10 @@ pub struct Brain<'a> {
     spoken: Spoken,
     /// Its newest decision, with the problem.
     explained: Option<Explained>,
+    /// Number of packets that no step had time to open.
+    unopened: u32,
+    /// What it has retrieved, where steps are short: the gameplay starts in the next step.
+    retrieved: Option<(CycleId, Decision)>,
 }
 
 impl<'a> Brain<'a> {
@@ -100,6 +117,57 @@ impl<'a> Brain<'a> {
             reuses_left: PATH_REUSES_MAX,
             spoken: Spoken::default(),
             explained: None,
+            unopened: 0,
+            retrieved: None,
+        }
+    }
+
+    /// Whether another packet may be opened before the next step. Where steps are short the others are lost
+    /// and counted. A teammate's leaves room for what the host sends in a step, so that no number of beacons
+    /// keeps a command or HALT away, which every command repeats; a step that has to plan opens no snapshot.
+    pub(crate) fn takes_packet(&mut self, now: Instant, kind: PacketKind) -> bool {
+        if !self.has_short_steps() {
+            return true;
+        }
+        let Since { effort, host_effort, gameplay_changed, .. } = self.since;
+        let must_plan = self.reuses_left == 0;
+        let takes = match kind {
+            PacketKind::Command => effort < INPUTS_MAX,
+            PacketKind::Snapshot => !must_plan && effort < INPUTS_MAX,
+            PacketKind::Beacon => {
+                let gameplay = if gameplay_changed { 0 } else { EFFORT_OF_GAMEPLAY };
+                let most = if must_plan { INPUTS_OF_PLAN_MAX } else { INPUTS_MAX - gameplay };
+                effort + HOST_INPUTS.saturating_sub(host_effort) < most
+            }
+        };
+        if takes {
+            self.charge(EFFORT_OF_PACKET, kind);
+        } else {
+            self.note_unopened();
+            self.unopened = self.unopened.saturating_add(1);
+            // What a step that has to plan leaves to the next ones is no flood.
+            if !must_plan || kind == PacketKind::Command {
+                self.spoken.leave_unopened(now);
+            }
+        }
+        takes
+    }
+
+    /// Accounts for a packet that was opened, whatever its tag was.
+    pub(crate) fn note_opened(&mut self, kind: PacketKind) {
+        let is_beacon = kind == PacketKind::Beacon;
+        self.charge(if is_beacon { EFFORT_OF_FRAME } else { EFFORT_OF_HOST_FRAME }, kind);
+    }
+
+    /// Accounts for a packet that was not opened.
+    pub(crate) fn note_unopened(&mut self) {
+        self.since.effort += EFFORT_OF_UNOPENED;
+    }
+
+    fn charge(&mut self, instructions: u32, kind: PacketKind) {
+        self.since.effort += instructions;
+        if kind != PacketKind::Beacon {
+            self.since.host_effort += instructions;
         }
     }
 
@@ -107,7 +175,6 @@ impl<'a> Brain<'a> {
     pub fn handle_team_message(&mut self, now: Instant, from: RobotId, message: &TeamMessage) {
         // Teammates' messages to the host are not for this robot.
         let TeamMessage::Beacon(beacon) = message else { return };
-        self.since.received = self.since.received.saturating_add(1);
         self.timers.advance(now);
         self.teammates.receive(now, from, beacon);
         if self.config.approach != Approach::Reactive
@@ -120,7 +187,6 @@ impl<'a> Brain<'a> {
     /// Handles the host's message, sent at most `age` ago; a robot that expects no host ignores it.
     pub fn handle_host_message(&mut self, now: Instant, age: Duration, message: &HostMessage) {
         let Some(host) = &mut self.host else { return };
-        self.since.received = self.since.received.saturating_add(1);
         self.timers.advance(now);
         if let Some(received) = host.handle(now, age, message) {
             self.actuation.receive_host(received);
@@ -145,8 +211,14 @@ impl<'a> Brain<'a> {
             Some(host) => host.see(now, sensors, &mut self.belief),
             None => self.belief.update(now, self.config.robot, sensors, &self.teammates),
         }
-        self.coordinate(now);
-        let intent = self.intent(now);
+        let effort = self.since.effort;
+        let is_busy = self.has_short_steps()
+            && effort > INPUTS_OF_PLAN_MAX
+            && (self.reuses_left > 0 || effort > INPUTS_OF_LEAST_PLAN_MAX);
+        if !is_busy {
+            self.coordinate(now);
+        }
+        let intent = self.intent(now, is_busy);
         let Self { actuation, belief, teammates, host, .. } = self;
         self.actuators = Some(actuation.act(now, belief, teammates, host.as_ref(), sensors, intent));
         self.spoken.sense(sensors);
@@ -156,19 +228,17 @@ impl<'a> Brain<'a> {
     /// What it wants of its body. A step does not both plan and do something else that takes long: a step in
     /// which a gameplay starts or ends stands; where steps are short, one that retrieved or received many
     /// frames reuses its path.
-    fn intent(&mut self, now: Instant) -> Intent {
+    fn intent(&mut self, now: Instant, is_busy: bool) -> Intent {
         let since = core::mem::take(&mut self.since);
-        let received_most = if self.actuation.winds() { RECEIVED_MOST_WINDING } else { RECEIVED_MOST };
-        let is_busy = since.retrieved || since.received > received_most;
+        self.actuation.set_spent(since.effort);
         if since.gameplay_changed {
             Intent::Stand { face: None }
-        } else if !self.has_short_steps() {
-            self.act(now)
-        } else if is_busy && self.reuses_left > 0 {
-            self.reuses_left -= 1;
+        } else if is_busy || self.has_short_steps() && since.retrieved {
+            self.reuses_left = self.reuses_left.saturating_sub(1);
             Intent::KeepPath
         } else {
-            self.reuses_left = PATH_REUSES_MAX.min(self.reuses_left + 1);
+            let more = if self.reuses_left == 0 { PATH_REUSES } else { 1 };
+            self.reuses_left = PATH_REUSES_MAX.min(self.reuses_left + more);
             self.act(now)
         }
     }
@@ -219,6 +289,11 @@ impl<'a> Brain<'a> {
         self.actuation.has_short_steps()
     }
 
+    /// Number of packets that were left unopened, because no step had time for them.
+    pub fn unopened(&self) -> u32 {
+        self.unopened
+    }
+
     /// The robot's world model as of its last step.
     pub fn belief(&self) -> &Belief {
         &self.belief
@@ -242,13 +317,29 @@ impl<'a> Brain<'a> {
     }
 }
 
-/// Frames that a short step opens and still plans: both parts of a snapshot, a command and two teammates'
-/// beacons. Opening one takes 2,000 instructions, planning up to 25,000 of the 40,000 that a step may take
-/// (docs/architecture.md §9).
-const RECEIVED_MOST: u8 = 5;
-/// One less where the path leads around something: planning such a path takes 7,000 of them.
-const RECEIVED_MOST_WINDING: u8 = 4;
+/// Instructions of a packet, and of the frame in it where it is for this robot: opened, and what follows from
+/// it. Under QEMU, by two to eleven more packets in a step: a command to another robot took 590, a beacon
+/// 1,340, a forged snapshot of 120 B 2,080.
+const EFFORT_OF_PACKET: u32 = 590;
+const EFFORT_OF_FRAME: u32 = 760;
+/// The same of the host's: its snapshots are the longest frames, and all of it is covered by the tag.
+const EFFORT_OF_HOST_FRAME: u32 = 1_500;
+/// Instructions of a packet that is left unopened: most of them are for handing it over.
+const EFFORT_OF_UNOPENED: u32 = 510;
+/// Instructions of what the host sends to a robot in a step: both parts of a snapshot and a command.
+const HOST_INPUTS: u32 = 3 * (EFFORT_OF_PACKET + EFFORT_OF_HOST_FRAME);
+/// Instructions of a gameplay that starts or ends.
+const EFFORT_OF_GAMEPLAY: u32 = 7_000;
+/// Instructions that inputs of a short step take where it plans, to within a packet: both parts of a
+/// snapshot, a command and two teammates' beacons, and packets for others between them.
+const INPUTS_OF_PLAN_MAX: u32 = 10_500;
+/// The same of a plan that tests the straight path only.
+const INPUTS_OF_LEAST_PLAN_MAX: u32 = 13_500;
+/// Instructions of inputs after which no other packet is opened, whoever sends it: a step that opens as many
+/// reuses its path.
+const INPUTS_MAX: u32 = 18_000;
 /// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual
-/// beacons between them, twice. Each step that plans adds one again, so that on a radio channel that is
-/// always full every second step plans.
+/// beacons between them, twice. Each step that plans adds one again.
 const PATH_REUSES_MAX: u8 = 10;
+/// Steps between two that plan on a radio channel that is always full, as in division A.
+const PATH_REUSES: u8 = 3;

@@ -4,12 +4,13 @@
 //! bytes.
 
 use casebase::CaseBase;
-use protocol::frame::{RobotKeys, TeamKey};
+use protocol::frame::{RobotKeys, Sender, TeamKey, claimed_sender, claims_audience};
 use protocol::link::{Link, Packet, Received};
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::TeamMessage;
 use protocol::{Duration, Instant};
 
+use crate::brain::PacketKind;
 use crate::{Brain, BrainConfig};
 
 /// A brain with its radio endpoint.
@@ -43,15 +44,31 @@ impl<'a> Station<'a> {
     }
 
     /// Handles a packet; anything but a genuine, new message of this team is counted and dropped. Where steps
-    /// are short nothing is sent before the next step.
+    /// are short nothing is sent before the next step, and packets for which it has no time are counted too.
     // In its caller it would be there twice, with its stack.
     #[inline(never)]
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
         if !self.brain.has_short_steps() {
             self.has_new_input = true;
         }
+        if self.link.is_to_another(packet) {
+            self.brain.note_unopened();
+            return;
+        }
+        let from = match claimed_sender(packet) {
+            Some(Sender::Host) if claims_audience(packet) => PacketKind::Snapshot,
+            Some(Sender::Host) => PacketKind::Command,
+            _ => PacketKind::Beacon,
+        };
+        if !self.brain.takes_packet(now, from) {
+            return;
+        }
         let led_by = self.link.host_epoch();
-        match self.link.open(now, packet) {
+        let opened = self.link.open(now, packet);
+        if !matches!(opened, Ok(Received::Elsewhere)) {
+            self.brain.note_opened(from);
+        }
+        match opened {
             Ok(Received::Teammate(from, message)) => self.brain.handle_team_message(now, from, &message),
             Ok(Received::Host(message)) => {
                 if self.link.host_epoch() != led_by {

@@ -1,14 +1,15 @@
 //! `avoid`: path planning around robots and out of forbidden regions, with the velocity of the next control
 //! step.
 //!
-//! [`plan`] is called every step and keeps no state. It answers in three parts:
+//! [`plan`] is called every step and takes no more instructions than the course's effort. It answers in three
+//! parts:
 //!
 //! 1. **Goal.** A target inside an obstacle is moved to a free point nearby. A start inside one is left for
 //!    such a point by a short path ([`RouteVerdict::Escape`]): through regions, around bodies and out of no
-//!    wall.
+//!    wall. A search that takes more than half of the effort goes on in the next step ([`Carried`]).
 //! 2. **Route.** The straight path, or the cheapest path found over tangent points of the obstacles on it: a
-//!    search of at most [`CHECKS_MAX`] straight pieces, fewer where the course's effort is spent, in a fixed
-//!    order. Cost is length, plus what turning the present velocity costs.
+//!    search of at most [`CHECKS_MAX`] straight pieces in a fixed order; where the effort is spent before, it
+//!    goes on in the next step. Cost is length, plus what turning the present velocity costs.
 //! 3. **Next step.** The near-time-optimal motion to the goal, or past the first corner, if the robot can
 //!    still brake straight to a stop without touching anything afterwards; else one that first loses its
 //!    sideways speed; else braking. So a robot that could brake before its first step can after every step:
@@ -25,8 +26,9 @@ mod route;
 
 use geometry::{Point, Shape, Vector, math};
 
-use self::item::Scene;
-use self::route::Route;
+use self::exit::ExitSearch;
+use self::item::{Scene, cost};
+use self::route::{CarriedRoute, Route};
 use crate::trajectory::{CalcMotion, FreeLimits, FreeMotion, Motion, State, usable};
 
 /// A region that the robot's centre must not enter.
@@ -80,13 +82,9 @@ pub struct Course<'o, F> {
     pub within: Option<Shape<F>>,
     /// Time until the next plan, s, at most 1.
     pub step: f32,
-    /// Most effort for planning a path: a unit for one straight piece and one obstacle, about forty
-    /// instructions of a Cortex-M4; a piece takes twelve units more. [`EFFORT_MAX`] suffices for every scene.
+    /// Most instructions of a Cortex-M4 that the plan may take, by the estimates of its parts;
+    /// [`EFFORT_MAX`] suffices for every scene.
     pub effort: u32,
-    /// The same for the route out of a region or obstacle.
-    pub effort_to_leave: u32,
-    /// Most straight pieces that are tested, [`CHECKS_LONG`] at most; a route out may take all of these.
-    pub checks: u32,
 }
 
 /// Kind of path found.
@@ -141,8 +139,27 @@ pub struct Detour<F> {
     pub motion: FreeMotion<F>,
 }
 
-/// Plans the next step.
-pub fn plan<F: Copy>(course: &Course<'_, F>) -> Detour<F> {
+/// What a plan leaves to the robot's next one: searches that did not end within its effort, and their
+/// results.
+#[derive(Clone, Debug)]
+pub struct Carried<F> {
+    exits: ExitSearch<F>,
+    route: CarriedRoute<F>,
+}
+
+impl<F> Default for Carried<F> {
+    fn default() -> Self {
+        Self { exits: ExitSearch::default(), route: CarriedRoute::default() }
+    }
+}
+
+/// Instructions with which a plan among this many obstacles tests the straight path at least.
+pub fn effort_least(obstacles: usize) -> u32 {
+    cost::PLAN + 2 * cost::POINT + cost::PIECE + obstacles as u32 * cost::ITEM
+}
+
+/// Plans the next step; `carried` is the robot's own, and kept from step to step.
+pub fn plan<F: Copy>(course: &Course<'_, F>, carried: &mut Carried<F>) -> Detour<F> {
     let Course { from, velocity, to, limits, within, step, .. } = *course;
     let time_passes = step > 0.0 && step <= STEP_MAX;
     if !time_passes || !limits.are_usable() || !usable(from, velocity, to) {
@@ -155,11 +172,11 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Detour<F> {
     let mut scene = Scene::new(course.obstacles, within, course.effort);
     scene.look();
     if scene.is_inside(from) {
-        return escape(course, &mut scene);
+        return escape(course, &mut scene, carried);
     }
-    let goal = scene.nearest_free(to);
+    let goal = scene.nearest_free(to, &mut carried.exits);
     scene.keep_apart(from, goal, false);
-    let route = Route::find(&scene, from, velocity, goal, &limits, course.checks);
+    let route = Route::find(&scene, &mut carried.route, (from, velocity), goal, &limits);
     let (verdict, towards) = match route.via {
         _ if !route.arrives => (RouteVerdict::Blocked { at: route.end }, route.via.unwrap_or(route.end)),
         None => (RouteVerdict::Direct, goal),
@@ -171,14 +188,14 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Detour<F> {
 }
 
 /// Out of the obstacle that holds the start: to a free point, around all bodies, through any region.
-fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Detour<F> {
+fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>, carried: &mut Carried<F>) -> Detour<F> {
     let Course { from, velocity, to, limits, .. } = *course;
-    let exit = scene.exit(from, course.effort_to_leave);
+    let exit = scene.exit(from, &mut carried.exits);
     // One search a step: a free point for a covered target is searched for when the robot is out.
     let goal = if scene.is_inside(to) { exit } else { to };
     scene.keep_apart(from, exit, true);
-    scene.allow(course.effort_to_leave);
-    let route = Route::find(scene, from, velocity, exit, &limits, CHECKS_LONG);
+    let route = Route::find(scene, &mut carried.route, (from, velocity), exit, &limits);
+    carried.exits.is_reachable = route.arrives;
     let towards = match route.via {
         Some(via) if route.arrives => past(from, via, route.behind, &limits),
         Some(via) => via,
@@ -266,13 +283,10 @@ fn moved<F: Copy>(course: &Course<'_, F>, velocity: Vector<F>) -> State<F> {
 
 /// Most obstacles that are used: 21 other robots, the rules' 12 shapes, and a reserve.
 pub const OBSTACLES_MAX: usize = 36;
-/// Most straight pieces that a search tests.
-pub const CHECKS_MAX: u32 = 12;
-/// The largest useful effort: twelve pieces among forty obstacles.
-pub const EFFORT_MAX: u32 = 624;
-/// The same for a long search, for a route out or while there is time: around a goal and into its opening it
-/// takes more.
-pub const CHECKS_LONG: u32 = 24;
+/// More instructions than any plan takes.
+pub const EFFORT_MAX: u32 = 1 << 20;
+/// Most straight pieces that a search tests: around a goal and into its opening it takes as many.
+pub const CHECKS_MAX: u32 = 24;
 /// Longest control step, s.
 const STEP_MAX: f32 = 1.0;
 /// Time for which other robots are assumed to keep their velocity, s: about what a robot needs to change it.

@@ -7,7 +7,7 @@
 use core::fmt;
 
 use geometry::{Angle, Field, Point, Segment, Shape, Vector};
-use motion::avoid::{self, Course, Obstacle};
+use motion::avoid::{self, Carried, Course, Obstacle};
 use motion::ball::{BallModel, BallPath};
 use motion::intercept::{InterceptRequest, Interception, kick_reach};
 use motion::trajectory::{CalcMotion, DragLimits, FreeLimits, Motion, State};
@@ -105,10 +105,8 @@ impl MotionTask {
             within: Some(Shape::Box { low: Point::new(-4.7, -3.2), high: Point::new(4.7, 3.2) }),
             step: 0.01,
             effort: avoid::EFFORT_MAX,
-            effort_to_leave: 4 * avoid::EFFORT_MAX,
-            checks: avoid::CHECKS_MAX,
         };
-        folded(&avoid::plan(&course).next)
+        folded(&avoid::plan(&course, &mut Carried::default()).next)
     }
 }
 

@@ -72,6 +72,7 @@ fn reason(why: &OrderReason) -> String {
         OrderReason::TooMany { allowed } => format!("the referee lets us have {allowed}"),
         OrderReason::Threat(_)
         | OrderReason::Uncovers
+        | OrderReason::Challenges { .. }
         | OrderReason::Chances { .. }
         | OrderReason::OfCase { .. }
         | OrderReason::PlaysCase { .. }

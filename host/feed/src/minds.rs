@@ -105,6 +105,7 @@ pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant, link: LinkWindow)
         (Condition::TIPPED, "tipped over"),
         (Condition::BATTERY_LOW, "battery low"),
         (Condition::LINK_LOST, "link lost"),
+        (Condition::FLOODED, "radio flooded"),
     ] {
         if condition.has(bit) {
             faults.push(fault.to_owned());

@@ -5,7 +5,7 @@
 use brain::body::omni::LIMITS;
 use geometry::{Field, GoalEnd, Point};
 use host::world::{Robot, World};
-use motion::avoid::{CHECKS_LONG, Course, EFFORT_MAX, OBSTACLES_MAX, Obstacle, plan};
+use motion::avoid::{Carried, Course, EFFORT_MAX, OBSTACLES_MAX, Obstacle, plan};
 use page::milli;
 use rules::keep_out::{Situation, keep_out};
 use rules::limits::ROBOT_RADIUS;
@@ -50,6 +50,7 @@ impl Paths<'_> {
         obstacles.truncate(OBSTACLES_MAX);
         let (mut from, mut velocity) = (robot.pose.position, robot.velocity);
         let mut points = vec![from];
+        let mut carried = Carried::default();
         for _ in 0..POINTS_MAX {
             let within = Some(rules.within.grown(-ROBOT_RADIUS));
             let course = Course {
@@ -61,10 +62,8 @@ impl Paths<'_> {
                 within,
                 step: STEP_S,
                 effort: EFFORT_MAX,
-                effort_to_leave: EFFORT_MAX,
-                checks: CHECKS_LONG,
             };
-            let path = plan(&course);
+            let path = plan(&course, &mut carried);
             (from, velocity) = (path.next.position, path.next.velocity);
             points.push(from);
             if from.distance(path.goal) < ARRIVED_WITHIN_M {

@@ -11,6 +11,7 @@
 mod ahead;
 mod attack;
 mod cap;
+mod challenge;
 mod defence;
 mod open_play;
 mod pass_state;

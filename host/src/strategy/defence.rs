@@ -12,7 +12,7 @@ const KEEPER_OUT_M: f32 = 0.15;
 /// A ball slower than this can be kicked without stopping it, m/s.
 pub(super) const LYING_SPEED_MAX_M_S: f32 = 0.8;
 /// A ball lower than this can be kicked, m: below a robot's height.
-const GROUND_HEIGHT_MAX_M: f32 = 0.1;
+pub(super) const GROUND_HEIGHT_MAX_M: f32 = 0.1;
 /// Distance of a clearance to the wing ahead of the ball, m.
 const CLEAR_AHEAD_M: f32 = 2.5;
 /// A clearance from before the area turns from straight out by this much, rad: 30°.

@@ -12,6 +12,7 @@
 
 mod bench;
 pub mod case_candidate;
+pub mod clear;
 mod coach;
 pub mod coerce;
 pub mod counters;

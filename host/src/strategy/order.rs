@@ -111,6 +111,11 @@ pub enum OrderReason {
     },
     /// The ball beside it is hidden from all cameras, and it does not have it: it makes way for their view.
     Uncovers,
+    /// This opponent has the ball: it is challenged.
+    Challenges {
+        /// The opponent with the ball.
+        opponent: RobotId,
+    },
     /// Plays a case that is worth as much as any other action.
     PlaysCase {
         /// The stored case proposed.
@@ -255,6 +260,7 @@ impl fmt::Display for OrderReason {
                 "{part} of case {case}, its pass moved by {moved:.2} m: received with {receive:.2}, then a goal with {goal:.2}"
             ),
             Self::Uncovers => f.write_str("makes way so that cameras see the ball beside it"),
+            Self::Challenges { opponent } => write!(f, "challenges opponent {opponent}, who has the ball"),
             Self::PlaysCase { case } => write!(f, "case {case} is the best action"),
             Self::Coerces { marker } => write!(f, "opponent {marker} follows it, out of the play"),
             Self::Coercing { arrived, of } => {

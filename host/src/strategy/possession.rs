@@ -48,17 +48,20 @@ impl Possession {
     /// Possession at this moment, after `self`; `contact` lists our robots whose sensors feel it.
     pub fn next(self, view: &View, contact: RobotSet) -> Self {
         let Some(ball) = view.ball else { return Self::Free };
-        let held = match self {
-            Self::Ours(id, _) | Self::Contested(id, _) => Some(id),
-            Self::Free | Self::Theirs(..) => None,
+        let (held, held_by_them) = match self {
+            Self::Ours(id, _) => (Some(id), None),
+            Self::Theirs(id, _) => (None, Some(id)),
+            Self::Contested(ours, theirs) => (Some(ours), Some(theirs)),
+            Self::Free => (None, None),
         };
+        let kept = |is_held: bool| if is_held { KEPT_MARGIN_M } else { 0.0 };
         let ours = view.ours.iter().filter(|robot| {
-            let margin = if held == Some(robot.id) { KEPT_MARGIN_M } else { 0.0 };
-            has(robot, &ball, margin)
+            has(robot, &ball, kept(held == Some(robot.id)))
                 || contact.has(robot.id) && robot.position.distance(ball.position) < FELT_WITHIN_M
         });
         let ours = nearest(ours, ball.position).map(|(robot, _)| robot.id);
-        let theirs = view.theirs.iter().filter(|robot| has(robot, &ball, 0.0));
+        let theirs =
+            view.theirs.iter().filter(|robot| has(robot, &ball, kept(held_by_them == Some(robot.id))));
         let theirs = nearest(theirs, ball.position).map(|(robot, _)| robot.id);
         match (ours, theirs, self) {
             (None, None, _) => Self::Free,

@@ -132,6 +132,22 @@ fn a_host_is_unauthenticated_until_it_welcomes_this_boot_epoch() {
 }
 
 #[test]
+fn only_the_hosts_messages_to_one_other_robot_of_the_team_are_to_another() {
+    let (a, mut host) = (link(2, 9), host(70));
+    for message in [stand(3), welcome(3, 9)] {
+        assert!(a.is_to_another(&host.seal(NOW, &message)), "{message:?}");
+    }
+    for message in [stand(2), welcome(2, 9), world(1, 0, 1)] {
+        assert!(!a.is_to_another(&host.seal(NOW, &message)), "{message:?}");
+    }
+    let mut of_another_team = host.seal(NOW, &stand(3));
+    of_another_team[1] += 1;
+    // Counted as refused when it is opened.
+    assert!(!a.is_to_another(&of_another_team) && !a.is_to_another(&[]));
+    assert!(!a.is_to_another(&link(3, 9).seal(&beacon(7))));
+}
+
+#[test]
 fn after_a_boot_recorded_frames_of_the_host_are_refused() {
     let (mut before, mut host) = after_handshake();
     let recorded =

@@ -8,6 +8,7 @@ use brain::{BrainConfig, Station};
 use casebase::CaseBase;
 use geometry::{Angle, Point, Pose, Twist, Vector};
 use hil_sim::{Backend, Mcu, McuError, Reply, Stream};
+use protocol::frame::Refusal;
 use protocol::link::Packet;
 use protocol::lockstep::TickIn;
 use protocol::robot_io::SensorFrame;
@@ -136,6 +137,12 @@ impl Computer<'_> {
         }
         sensors
     }
+
+    /// Number of packets that it did not hear, for lack of time or as the host's that came too late: a second
+    /// host's late welcome, for one, leaves it with the first.
+    fn unheard(&self) -> u32 {
+        self.station.brain().unopened() + self.station.link().refused()[Refusal::Stale.kind()]
+    }
 }
 
 impl Mcu for Computer<'_> {
@@ -150,7 +157,6 @@ impl Mcu for Computer<'_> {
         let sensors = self.sensors(ms, &tick.sensors);
         {
             let mut shared = self.shared.borrow_mut();
-            shared.handed.extend(packets.iter().map(|packet| (self.id, packet.clone())));
             shared.sensed.push((self.id, sensors.clone()));
         }
         while let Some(due) = self.station.poll_timeout().filter(|due| *due <= now) {
@@ -158,7 +164,11 @@ impl Mcu for Computer<'_> {
             self.drain(due);
         }
         for packet in &packets {
+            let unheard = self.unheard();
             self.station.handle_packet(now, packet);
+            if self.unheard() == unheard {
+                self.shared.borrow_mut().handed.push((self.id, packet.clone()));
+            }
             self.drain(now);
         }
         self.station.handle_sensors(now, &sensors);

@@ -63,11 +63,10 @@ impl Actuation {
         matches!(self, Self::Wheels(..))
     }
 
-    /// On wheels: whether the last path led around something.
-    pub fn winds(&self) -> bool {
-        match self {
-            Self::Legs(_) => false,
-            Self::Wheels(_, wheels) => wheels.drivetrain.winds(),
+    /// Tells it how many instructions the inputs of this step took.
+    pub fn set_spent(&mut self, instructions: u32) {
+        if let Self::Wheels(_, wheels) = self {
+            wheels.drivetrain.set_spent(instructions);
         }
     }
 

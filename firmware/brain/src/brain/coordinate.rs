@@ -8,7 +8,7 @@ use protocol::team::{
 };
 use protocol::{Duration, Instant, RobotId};
 
-use super::{Brain, explained::Explained};
+use super::{Brain, EFFORT_OF_GAMEPLAY, INPUTS_OF_PLAN_MAX, explained::Explained};
 use crate::config::Approach;
 use crate::estimate;
 use crate::execution::{ActionScene, Execution};
@@ -42,6 +42,7 @@ impl Brain<'_> {
         }
         if changed == CycleEvent::Gameplay {
             self.since.gameplay_changed = true;
+            self.since.effort += EFFORT_OF_GAMEPLAY;
             self.begin_part(now);
         }
     }
@@ -131,6 +132,14 @@ impl Brain<'_> {
                 if elects && settled && reported && !paused { self.propose(now) } else { None }
             }
             Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
+                if let Some((cycle, decision)) = self.retrieved.take()
+                    && Some(cycle) == self.cycle.id()
+                {
+                    return self.cycle.decided(decision);
+                }
+                if self.has_short_steps() && self.since.effort > INPUTS_OF_PLAN_MAX {
+                    return None;
+                }
                 self.since.retrieved = true;
                 let holder = self.holder(now);
                 let problem = self.problem(now);
@@ -138,6 +147,11 @@ impl Brain<'_> {
                     .map_or((Decision::NoCase, Grounds::NoBall), |problem| self.decide(now, problem, holder));
                 self.explained = (self.cycle.id())
                     .map(|cycle| Explained::new(cycle, &decision, grounds, problem.as_ref()));
+                if self.has_short_steps() {
+                    // Retrieval and the start of a gameplay do not fit into one step.
+                    self.retrieved = self.cycle.id().map(|cycle| (cycle, decision));
+                    return None;
+                }
                 self.cycle.decided(decision)
             }
             Some(Decision::Undecided) => None,

@@ -27,6 +27,8 @@ pub(super) struct Spoken {
     contact: bool,
     kicker_ready: bool,
     tipped: bool,
+    /// When a packet was last left unopened.
+    unopened: Option<Instant>,
 }
 
 impl Spoken {
@@ -52,6 +54,10 @@ impl Spoken {
 
     pub(super) fn beacon(&mut self, now: Instant) {
         self.beacon = Some(now);
+    }
+
+    pub(super) fn leave_unopened(&mut self, now: Instant) {
+        self.unopened = Some(now);
     }
 
     pub(super) fn explained(&mut self, now: Instant) {
@@ -118,6 +124,7 @@ impl Brain<'_> {
             (self.actuation.is_battery_low(), Condition::BATTERY_LOW),
             (self.actuation.ruling() != Ruling::Allowed, Condition::GOVERNED),
             (reasons.has(LimitReason::Silence), Condition::LINK_LOST),
+            (spoken.unopened.is_some_and(|last| now.since(last) < FLOODED_FOR), Condition::FLOODED),
         ];
         let set = |all: Condition, (holds, bit): (bool, Condition)| if holds { all.with(bit) } else { all };
         let condition = condition.into_iter().fold(Condition::default(), set);
@@ -146,6 +153,8 @@ impl Brain<'_> {
     }
 }
 
+/// The robot reports a flooded radio for so long after it has left a packet unopened.
+const FLOODED_FOR: Duration = Duration::millis(1_000);
 /// Period of the telemetry: ten times a second.
 const TELEMETRY_PERIOD: Duration = Duration::millis(100);
 /// But not in every step while something toggles, as a break-beam sensor does.

@@ -27,7 +27,7 @@ pub(super) struct Scene<'o, F> {
     items: heapless::Vec<Item<F>, OBSTACLES_MAX>,
     moves: bool,
     within: Option<Shape<F>>,
-    /// Effort that is left for tests.
+    /// Instructions that are left for the plan.
     effort: Cell<u32>,
 }
 
@@ -56,6 +56,7 @@ impl<'o, F: Copy> Scene<'o, F> {
             // The capacity suffices: the obstacles were counted above.
             let _ = self.items.push(item);
         }
+        self.spend(cost::PLAN + self.for_each_item(cost::PLAN_ITEM));
     }
 
     /// Every obstacle with its item.
@@ -112,26 +113,34 @@ impl<'o, F: Copy> Scene<'o, F> {
 
     /// An obstacle nearer to the point than `least`, which is [`SKIN`] at most.
     pub(super) fn nearer(&self, point: Point<F>, least: f32) -> Option<&Obstacle<F>> {
-        let near = |item: &Item<F>, obstacle: &Obstacle<F>| {
-            item.may_hold(point) && obstacle.shape.distance_to(point) < least
-        };
-        self.all().find(|(item, obstacle)| near(item, obstacle)).map(|(_, obstacle)| obstacle)
+        self.spend(cost::POINT + self.for_each_item(cost::POINT_ITEM));
+        self.all()
+            .find(|(item, obstacle)| {
+                item.may_hold(point) && {
+                    self.spend(cost::SHAPE);
+                    obstacle.shape.distance_to(point) < least
+                }
+            })
+            .map(|(_, obstacle)| obstacle)
     }
 
-    /// Spends `a_third` per three obstacles, as every obstacle was tested, and `besides` in addition.
-    pub(super) fn spend(&self, a_third: u32, besides: u32) {
-        let looked = self.items.len() as u32 * a_third / 3;
-        self.effort.set(self.effort.get().saturating_sub(looked + besides));
+    fn for_each_item(&self, instructions: u32) -> u32 {
+        self.items.len() as u32 * instructions
     }
 
-    /// Sets the effort available from now on.
-    pub(super) fn allow(&self, effort: u32) {
-        self.effort.set(effort);
+    /// Takes what was done from the effort.
+    pub(super) fn spend(&self, instructions: u32) {
+        self.effort.set(self.effort.get().saturating_sub(instructions));
     }
 
-    /// Whether a plan has used its share of a step.
-    pub(super) fn is_spent(&self) -> bool {
-        self.effort.get() == 0
+    /// Instructions that are left.
+    pub(super) fn effort(&self) -> u32 {
+        self.effort.get()
+    }
+
+    /// Whether another piece of path may be tested.
+    pub(super) fn affords_a_piece(&self) -> bool {
+        self.effort() >= cost::PIECE + self.for_each_item(cost::PIECE_ITEM)
     }
 
     pub(super) fn is_inside(&self, point: Point<F>) -> bool {
@@ -150,7 +159,7 @@ impl<'o, F: Copy> Scene<'o, F> {
     /// The first obstacle that a piece of path touches, by its number, when it takes from `at` to `at + time`
     /// s.
     pub(super) fn first_hit(&self, from: Point<F>, path: Vector<F>, at: f32, time: f32) -> Option<usize> {
-        self.spend(3, PIECE);
+        self.spend(cost::PIECE + self.for_each_item(cost::PIECE_ITEM));
         let mut first = None;
         let mut least = f32::INFINITY;
         let seen =
@@ -158,7 +167,7 @@ impl<'o, F: Copy> Scene<'o, F> {
         for (number, (item, obstacle)) in self.all().enumerate() {
             let (from, path) = if item.moves { seen.by(obstacle.velocity) } else { (from, path) };
             if let Some(share) = touches(from, path, item.center, item.route)
-                && let Some(share) = item.hit(&obstacle.shape, from, path, item.margin, share)
+                && let Some(share) = self.hit(item, obstacle, from, path, share)
                 && share < least
             {
                 (first, least) = (Some(number), share);
@@ -167,14 +176,32 @@ impl<'o, F: Copy> Scene<'o, F> {
         first
     }
 
+    /// As [`Item::hit`] with the margin of routes; shapes that are no discs take time.
+    #[inline]
+    fn hit(
+        &self,
+        item: &Item<F>,
+        obstacle: &Obstacle<F>,
+        from: Point<F>,
+        path: Vector<F>,
+        share: f32,
+    ) -> Option<f32> {
+        if !item.is_disc {
+            self.spend(cost::SHAPE);
+        }
+        item.hit(&obstacle.shape, from, path, item.margin, share)
+    }
+
     /// Whether no body stands on the straight path; for a body that covers the start, whether the path does
     /// not lead deeper in.
     pub(super) fn sees(&self, from: Point<F>, to: Point<F>) -> bool {
         let path = to - from;
+        self.spend(cost::POINT + self.for_each_item(cost::PIECE_ITEM));
         self.all().filter(|(_, obstacle)| obstacle.is_body).all(|(item, obstacle)| {
             if touches(from, path, item.center, item.route).is_none() {
                 return true;
             }
+            self.spend(2 * cost::SHAPE);
             let depth = obstacle.shape.distance_to(from);
             if depth < 0.0 {
                 return obstacle.shape.distance_to(from + path * A_LITTLE) >= depth;
@@ -376,8 +403,32 @@ const NOWHERE: f32 = -1.0;
 const TOUCH: f32 = 0.000_5;
 /// A slower obstacle counts as standing, m/s.
 const SPEED_MIN: f32 = 0.02;
-/// Effort for a piece of path besides testing obstacles: its corner and its place in the search.
-const PIECE: u32 = 12;
+
+/// Instructions of a Cortex-M4 that the parts of a plan take at most, by which its effort is kept: estimates
+/// from the table of firmware/motion/README.md, held together by the worst step of whole matches
+/// (`qemu_match`).
+pub(super) mod cost {
+    /// What every plan does: motions, the checks of its step, the choice of the verdict.
+    pub(crate) const PLAN: u32 = 3_500;
+    /// The same for an obstacle: its circle, its margin, and three checks of braking.
+    pub(crate) const PLAN_ITEM: u32 = 170;
+    /// A piece of path: its corner and its place in the search.
+    pub(crate) const PIECE: u32 = 900;
+    /// A piece of path and an obstacle.
+    pub(crate) const PIECE_ITEM: u32 = 35;
+    /// A point.
+    pub(crate) const POINT: u32 = 60;
+    /// A point and an obstacle.
+    pub(crate) const POINT_ITEM: u32 = 14;
+    /// An obstacle in the least plan: two points and a piece of path.
+    pub(crate) const ITEM: u32 = PLAN_ITEM + 2 * POINT_ITEM + PIECE_ITEM;
+    /// Where the circle is touched: the shape itself.
+    pub(crate) const SHAPE: u32 = 130;
+    /// A candidate for an exit: the point itself, …
+    pub(crate) const EXIT: u32 = 50;
+    /// … and a comparison with one that is known.
+    pub(crate) const EXIT_KNOWN: u32 = 13;
+}
 
 /// The unit normal, from the middle of a disc, of its tangent through `from`: on the left seen from there for
 /// `side` +1.

@@ -3,7 +3,7 @@
 use geometry::{Point, Shape, Vector, math};
 
 use super::item::{Item, Scene, at, tangent};
-use super::{CHECKS_LONG, Obstacle};
+use super::{CHECKS_MAX, Obstacle};
 use crate::trajectory::FreeLimits;
 
 /// Result of the search.
@@ -21,7 +21,7 @@ pub(super) struct Route<F> {
 }
 
 /// A corner that can be reached.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Node<F> {
     at: Point<F>,
     /// Number of the corner before.
@@ -33,12 +33,39 @@ struct Node<F> {
     estimate: f32,
 }
 
+/// What a search leaves to the next step: its corners, where the effort ended it, and the route that was
+/// found in more than one step, which no single search would find again.
+#[derive(Clone, Debug)]
+pub(super) struct CarriedRoute<F> {
+    start: Point<F>,
+    goal: Point<F>,
+    nodes: heapless::Vec<Node<F>, NODES_MAX>,
+    /// Pieces that the unfinished search may still test; 0 where none is unfinished.
+    checks: u32,
+    /// Corners of the route that was found, the first one last.
+    corners: Corners<F>,
+}
+
+type Corners<F> = heapless::Vec<Point<F>, CORNERS_MAX>;
+
+impl<F> Default for CarriedRoute<F> {
+    fn default() -> Self {
+        Self {
+            start: Point::default(),
+            goal: Point::default(),
+            nodes: heapless::Vec::new(),
+            checks: 0,
+            corners: heapless::Vec::new(),
+        }
+    }
+}
+
 struct Search<'s, F> {
     scene: &'s Scene<'s, F>,
     goal: Point<F>,
     velocity: Vector<F>,
     limits: &'s FreeLimits,
-    nodes: heapless::Vec<Node<F>, NODES_MAX>,
+    nodes: &'s mut heapless::Vec<Node<F>, NODES_MAX>,
     /// Number of path pieces that may still be tested.
     checks: u32,
     /// Speed towards the goal, m/s.
@@ -48,32 +75,90 @@ struct Search<'s, F> {
 impl<F: Copy> Route<F> {
     pub(super) fn find(
         scene: &Scene<'_, F>,
-        from: Point<F>,
-        velocity: Vector<F>,
+        carried: &mut CarriedRoute<F>,
+        (from, velocity): (Point<F>, Vector<F>),
         goal: Point<F>,
         limits: &FreeLimits,
-        checks: u32,
     ) -> Self {
         let length = from.distance(goal);
         let start = Node { at: from, parent: 0, length: 0.0, cost: 0.0, estimate: length };
         let towards = (goal - from).unit().unwrap_or_default();
         let speed = math::clamp(velocity.dot(towards), 0.0, limits.speed);
-        let nodes = heapless::Vec::new();
-        let mut search =
-            Search { scene, goal, velocity, limits, nodes, checks: checks.min(CHECKS_LONG), speed };
-        // The first of many.
-        let _ = search.nodes.push(start);
-        match search.run() {
-            Some(last) => search.route(start, last, true),
+        let CarriedRoute { start: began, goal: aimed, nodes, checks, corners } = carried;
+        if aimed.distance(goal) > SAME_PLACE_M {
+            *checks = 0;
+            corners.clear();
+        }
+        let mut search = Search { scene, goal, velocity, limits, nodes, checks: CHECKS_MAX, speed };
+        if let Some(route) = search.known(start, corners) {
+            return route;
+        }
+        corners.clear();
+        let goes_on = *checks > 0 && began.distance(from) < SAME_PLACE_M;
+        match search.nodes.first_mut().filter(|_| goes_on) {
+            Some(first) => {
+                first.at = from;
+                search.checks = *checks;
+            }
+            None => {
+                search.nodes.clear();
+                // The first of many.
+                let _ = search.nodes.push(start);
+                search.checks = CHECKS_MAX;
+                (*began, *aimed) = (from, goal);
+            }
+        }
+        let found = search.run();
+        let unfinished = found.is_none() && !scene.affords_a_piece() && search.cheapest().is_some();
+        *checks = if unfinished { search.checks } else { 0 };
+        match found {
+            Some(last) => {
+                let route = search.route(start, last, true);
+                if goes_on {
+                    search.note_corners(last, corners);
+                }
+                route
+            }
             None => search.route(start, search.most_promising(), false),
         }
     }
 }
 
 impl<F: Copy> Search<'_, F> {
+    /// The route along these corners, without the first one where it is passed; `None` where it is blocked,
+    /// as far as the effort tells.
+    fn known(&mut self, start: Node<F>, corners: &mut Corners<F>) -> Option<Route<F>> {
+        let behind = |corners: &Corners<F>| corners.iter().rev().nth(1).copied();
+        let second = behind(corners).unwrap_or(self.goal);
+        if !corners.is_empty() && self.first_hit(&start, second).is_none() {
+            corners.pop();
+        }
+        let via = *corners.last()?;
+        let mut node = start;
+        for end in corners.iter().rev().copied().chain([self.goal]) {
+            if self.scene.affords_a_piece() && self.first_hit(&node, end).is_some() {
+                return None;
+            }
+            node = Node { at: end, length: node.length + node.at.distance(end), ..node };
+        }
+        let behind = behind(corners).unwrap_or(self.goal);
+        Some(Route { arrives: true, via: Some(via), behind, end: self.goal, length: node.length })
+    }
+
+    /// Fills in the corners of the route to this node, if they are few.
+    fn note_corners(&self, last: usize, corners: &mut Corners<F>) {
+        let mut at = last;
+        while let Some(node) = self.nodes.get(at).filter(|_| at != 0) {
+            if corners.push(node.at).is_err() {
+                return corners.clear();
+            }
+            at = node.parent;
+        }
+    }
+
     /// The number of the corner from which the goal is straight ahead.
     fn run(&mut self) -> Option<usize> {
-        while self.checks > 0 && !self.scene.is_spent() {
+        while self.checks > 0 && self.scene.affords_a_piece() {
             let (number, node) = self.cheapest()?;
             self.nodes.get_mut(number)?.estimate = f32::INFINITY;
             let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
@@ -127,7 +212,7 @@ impl<F: Copy> Search<'_, F> {
 
     /// Adds a corner that can be reached from the node; else returns the number of the obstacle before it.
     fn reach(&mut self, number: usize, node: &Node<F>, at: Point<F>, extra: f32) -> Option<usize> {
-        if !self.scene.stays_within(at) || self.checks == 0 || self.scene.is_spent() {
+        if !self.scene.stays_within(at) || self.checks == 0 || !self.scene.affords_a_piece() {
             return None;
         }
         if let Some(hit) = self.first_hit(node, at) {
@@ -325,10 +410,14 @@ fn around<F: Copy>(
     center + (first + middle) * (radius / opening)
 }
 
+/// A start and a goal that moved no farther are the same, m.
+const SAME_PLACE_M: f32 = 0.1;
+/// Most corners of a route that is kept.
+const CORNERS_MAX: usize = 5;
 /// Most turns that are tried from a corner.
 const TURNS_MAX: usize = 12;
 /// Most corners of a search: one a piece, and the start.
-const NODES_MAX: usize = CHECKS_LONG as usize + 1;
+const NODES_MAX: usize = CHECKS_MAX as usize + 1;
 /// Distance of corners outside of the routes' margin, m, so that rounding does not put the next piece inside.
 const CORNER_SKIN: f32 = 0.002;
 /// What passing in front costs, by the obstacle's speed across the path, s: a robot may be late by as much.

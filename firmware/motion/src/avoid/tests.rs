@@ -9,6 +9,11 @@ use std::vec::Vec;
 
 use super::*;
 
+/// As [`super::plan`], without what was searched for before.
+fn plan<F: Copy>(course: &Course<'_, F>) -> Detour<F> {
+    super::plan(course, &mut Carried::default())
+}
+
 fn at(x: f32, y: f32) -> Point<Field> {
     Point::new(x, y)
 }
@@ -28,8 +33,6 @@ fn course(from: Point<Field>, to: Point<Field>, obstacles: &[Obstacle<Field>]) -
         within: None,
         step: STEP,
         effort: EFFORT_MAX,
-        effort_to_leave: 4 * EFFORT_MAX,
-        checks: CHECKS_LONG,
     }
 }
 
@@ -46,8 +49,9 @@ struct Drive {
 fn drive(start: Course<'_, Field>, patience: f32) -> Drive {
     let mut course = start;
     let mut drive = Drive { time: 0.0, arrived: false, deepest: f32::NEG_INFINITY, left: f32::NEG_INFINITY };
+    let mut carried = Carried::default();
     while drive.time < patience {
-        let path = plan(&course);
+        let path = super::plan(&course, &mut carried);
         for part in 1..=4 {
             let share = part as f32 * 0.25;
             let along = course.velocity + (path.next.velocity - course.velocity) * (0.5 * share);
@@ -264,7 +268,7 @@ fn every_place_of_overlapping_shapes_has_a_way_out() {
         let from = at(dice.within(4.7), dice.within(3.2));
         let mut found = Scene::new(&scene, Some(SURFACE), EFFORT_MAX);
         found.look();
-        let exit = found.exit(from, EFFORT_MAX);
+        let exit = found.exit(from, &mut ExitSearch::default());
         assert!(SURFACE.contains(exit), "scene {number}: {from:?} → {exit:?}");
         assert!(scene.iter().all(|o| o.shape.distance_to(exit) > 0.0), "scene {number}: {from:?} → {exit:?}");
     }
@@ -396,8 +400,6 @@ fn nothing_that_comes_in_makes_it_fall_over() {
             within,
             step,
             effort: EFFORT_MAX,
-            effort_to_leave: 4 * EFFORT_MAX,
-            checks: CHECKS_LONG,
         });
         assert!(
             path.next.velocity.is_finite() && path.next.position.is_finite(),

@@ -11,6 +11,7 @@ use motion::trajectory::CalcMotion;
 use protocol::{Duration, Instant, RobotId};
 
 use super::super::counters::Sent;
+use super::super::defence::room_along;
 use super::super::order::{OrderReason, Role, Task};
 use super::super::pass::bridge::{RADIUS, refine};
 use super::super::pass::shot::shot;
@@ -83,6 +84,10 @@ impl Coach {
     pub(super) fn order_action(&self, plan: &mut Plan<'_>, action: &Action) -> Option<(Task, OrderReason)> {
         match *action {
             Action::PlayOn => None,
+            Action::Clear { at, kick } => {
+                let room = plan.view.ball.map_or(0.0, |ball| room_along(plan.view, ball.position, at));
+                Some((Task::Kick { at, kick }, OrderReason::BestTarget { room }))
+            }
             Action::Shot { at, goal } => {
                 Some((Task::Kick { at, kick: support::SHOT }, OrderReason::Chances { receive: 1.0, goal }))
             }
@@ -195,7 +200,7 @@ impl Coach {
     fn is_still_valid(&self, view: &View, intent: &Intent, ball: &ViewBall) -> bool {
         let held = match intent.action {
             Action::PlayOn | Action::Case(_) => PLAY_ON_HELD,
-            Action::Shot { .. } | Action::Pass { .. } => CHOICE_HELD,
+            Action::Shot { .. } | Action::Pass { .. } | Action::Clear { .. } => CHOICE_HELD,
             Action::OfCase { .. } => CASE_PASS_HELD,
         };
         if view.now.since(intent.since) >= held {

@@ -1,15 +1,16 @@
 //! `defence`: defence of our goal: keeper and two defenders on the ball's line; by threats, if the team plays
 //! them (Biswas et al. 2014 §5).
 
-use geometry::{Attack, Point};
+use geometry::{Angle, Attack, Point, Segment, Vector};
 use protocol::{Duration, Instant, RobotId};
 use rules::limits::ROBOT_RADIUS;
 use rules::{Phase, Side, contact};
 
 use super::super::order::{OrderReason, Role, Task};
+use super::super::pass::Kicks;
 use super::super::threat::{self, receiving::comes_at_goal};
-use super::super::view::{RobotSet, View, ViewBall};
-use super::super::{defence, roles};
+use super::super::view::{RobotSet, View, ViewBall, ViewRobot};
+use super::super::{clear, defence, roles};
 use super::{Coach, Plan};
 
 /// The ball is in the other half once it is this far beyond the halfway line, m.
@@ -38,6 +39,21 @@ const BALL_MOVED_M: f32 = 0.3;
 /// A ball that comes at our goal faster than this is intercepted on its path, m/s: slower ones leave time to
 /// approach.
 const SHOT_SPEED_MIN_M_S: f32 = 0.5;
+
+/// The keeper takes a rebound this near to it at up to this speed, m, m/s.
+const REBOUND_WITHIN_M: f32 = 0.5;
+const REBOUND_SPEED_MAX_M_S: f32 = 1.2;
+/// From the ball to the centre of a robot that lines up behind it, m (`brain`'s get_ball).
+const BEHIND_BALL_M: f32 = 0.165;
+/// Number of sides from which it may be taken.
+const TAKEN_FROM: i16 = 24;
+/// Between a body and the goal's walls, m; how far behind its line a centre may be in the goal.
+const OFF_WALLS_M: f32 = 0.02;
+const IN_GOAL_MAX_M: f32 = 0.05;
+/// Another clearance is better by this, P(goal).
+const CLEARED_BETTER_BY: f32 = 0.02;
+/// The keeper leaves its area for a ball at which it is sooner than any opponent by this, s.
+const KEEPER_OUT_SOONER_S: f32 = 0.4;
 
 /// A running clearance: its robot, start and place.
 #[derive(Clone, Copy, Debug)]
@@ -90,10 +106,8 @@ impl DefenceState {
             }));
         }
         // There is no room behind it: it is approached from the field, and turned.
-        let to_ball = ball.position - robot.position;
-        let has =
-            to_ball.norm() < FRONT_WITHIN_M && (to_ball.angle() - robot.heading).abs() < FRONT_WITHIN_RAD;
-        if !has {
+        if !has_at_front(robot, ball) {
+            let to_ball = ball.position - robot.position;
             let room = defence::room_along(view, robot.position, ball.position);
             return Some((Task::GetBall { face: ball.position + to_ball }, OrderReason::BestTarget { room }));
         }
@@ -104,7 +118,18 @@ impl DefenceState {
     }
 
     /// The keeper at its place; it clears a ball in our area, and intercepts a shot on its line.
-    fn keeper(&mut self, view: &View, at: Point<Attack>, why: OrderReason) -> (Task, OrderReason) {
+    fn keeper(
+        &mut self,
+        view: &View,
+        kicks: Option<&Kicks>,
+        at: Point<Attack>,
+        why: OrderReason,
+    ) -> (Task, OrderReason) {
+        if let (Some(kicks), Some(ball), Some(keeper)) = (kicks, view.ball, view.our(view.keeper))
+            && self.keeper_plays(view, keeper, &ball)
+        {
+            return self.keeper_clears(view, kicks, keeper, &ball);
+        }
         let (task, usual) =
             if view.phase == Phase::Run { defence::keeper(view) } else { (defence::keeper_line(view), why) };
         let Some(ball) = view.ball else { return (task, why) };
@@ -121,6 +146,65 @@ impl DefenceState {
             return (task, why);
         }
         (Task::GoTo { at, face: at.direction_to(ball.position) }, why)
+    }
+
+    /// Whether the keeper plays the ball: a slow one in its area or at its goal line, or before the area where it is
+    /// first.
+    fn keeper_plays(&self, view: &View, keeper: &ViewRobot, ball: &ViewBall) -> bool {
+        let speed = ball.velocity.norm();
+        let near = keeper.position.distance(ball.position) < REBOUND_WITHIN_M;
+        let slow = speed < if near { REBOUND_SPEED_MAX_M_S } else { defence::LYING_SPEED_MAX_M_S };
+        let shot = speed > SHOT_SPEED_MIN_M_S && comes_at_goal(view, ball.position, ball.velocity);
+        let before = self.keepers_ball == Some(true) && lies_before_our_area(view, ball);
+        view.phase == Phase::Run
+            && slow
+            && !shot
+            && ball.height < defence::GROUND_HEIGHT_MAX_M
+            && (before || view.in_our_area(ball.position, 0.0))
+    }
+
+    /// The keeper's clearance, by the same list as everyone's, looked at again until the ball leaves. Where no body
+    /// fits behind the ball it is taken from a side on which one does, and turned.
+    fn keeper_clears(
+        &mut self,
+        view: &View,
+        kicks: &Kicks,
+        keeper: &ViewRobot,
+        ball: &ViewBall,
+    ) -> (Task, OrderReason) {
+        let from = ball.position;
+        let has = has_at_front(keeper, ball) || view.contact.has(keeper.id);
+        let fits = |ray: Vector<Attack>| {
+            let places = [BEHIND_BALL_M, contact::TOUCHES_WITHIN].map(|off| from - ray * off);
+            has || places.iter().all(|at| has_room(view, *at))
+        };
+        let room = |at| OrderReason::ClearsArea { room: defence::room_along(view, from, at) };
+        let Some(best) = clear::clearance(view, kicks, keeper, from, fits) else {
+            let straight = from - keeper.position;
+            let rays = (0..TAKEN_FROM).map(|step| {
+                Vector::polar(1.0, Angle::degrees(360.0 / f32::from(TAKEN_FROM) * f32::from(step)))
+            });
+            let ray = rays
+                .filter(|ray| has_room(view, from - *ray * contact::TOUCHES_WITHIN))
+                .max_by(|a, b| a.dot(straight).total_cmp(&b.dot(straight)));
+            let face = from + ray.unwrap_or(straight);
+            return (Task::GetBall { face }, room(face));
+        };
+        let kept = self.clearance.filter(|kept| {
+            kept.who == keeper.id
+                && kept.from.distance(from) < BALL_MOVED_M
+                && view.now.since(kept.since) < CLEARANCE_KEPT
+        });
+        if let Some(kept) = kept
+            && let Task::Kick { at, kick } = kept.task
+            && (at - from).unit().is_some_and(fits)
+            && clear::worth_again(view, kicks, keeper, from, (at, kick)) > best.worth - CLEARED_BETTER_BY
+        {
+            return (kept.task, room(at));
+        }
+        let (task, why) = (Task::Kick { at: best.at, kick: best.kick }, room(best.at));
+        self.clearance = Some(Clearance { who: keeper.id, since: view.now, from, task, why });
+        (task, why)
     }
 
     /// The earlier choice for a ball that still lies there: opponents that follow the robot's turns do not
@@ -172,8 +256,19 @@ impl Coach {
         if all_robots {
             plan.free.iter().for_each(|id| team.insert(*id));
         }
-        let defence =
-            threat::defend(view, team, &mut self.defence.threats, &threat::ThreatSettings::default());
+        // Who took their restart may not touch the ball again.
+        let kicker = self.pass.their_kicker;
+        let threats = kicker.map(|kicker| {
+            let mut threats = view.clone();
+            threats.theirs.retain(|robot| robot.id != kicker);
+            threats
+        });
+        let defence = threat::defend(
+            threats.as_ref().unwrap_or(view),
+            team,
+            &mut self.defence.threats,
+            &threat::ThreatSettings::default(),
+        );
         self.roles.defenders = self.defence.threats.primaries();
         for (i, assignment) in defence.assignments.iter().enumerate() {
             let (id, why) = (assignment.robot, OrderReason::Threat(assignment.guards));
@@ -181,7 +276,8 @@ impl Coach {
                 continue;
             }
             if id == view.keeper {
-                let (task, why) = self.defence.keeper(view, assignment.at, why);
+                let kicks = self.tactics.rated.then(|| self.passes.kicks());
+                let (task, why) = self.defence.keeper(view, kicks, assignment.at, why);
                 plan.order(id, Role::Keeper, task, why);
                 continue;
             }
@@ -220,7 +316,15 @@ impl Coach {
             Some(false) => -roles::WORTH,
             None => 0.0,
         };
-        let is = roles::time_to(keeper, ball.position) < soonest + worth;
+        let own = roles::time_to(keeper, ball.position);
+        // With the goal empty behind it, it must not meet an opponent there.
+        let theirs = view
+            .theirs
+            .iter()
+            .map(|robot| roles::time_to(robot, ball.position))
+            .fold(f32::INFINITY, f32::min);
+        let alone = !self.tactics.rated || own + KEEPER_OUT_SOONER_S < theirs + worth;
+        let is = own < soonest + worth && alone;
         self.defence.keepers_ball = Some(is);
         is
     }
@@ -253,6 +357,25 @@ impl Coach {
         }
         team
     }
+}
+
+/// Whether the ball lies at the robot's front.
+fn has_at_front(robot: &ViewRobot, ball: &ViewBall) -> bool {
+    let to_ball = ball.position - robot.position;
+    to_ball.norm() < FRONT_WITHIN_M && (to_ball.angle() - robot.heading).abs() < FRONT_WITHIN_RAD
+}
+
+/// Whether a body has room there beside our goal's walls, and on the field surface behind its line.
+fn has_room(view: &View, at: Point<Attack>) -> bool {
+    let (goal, field) = (view.our_goal(), &view.field);
+    let off_walls = [0.5, -0.5].into_iter().all(|side| {
+        let post = Point::new(goal.x(), side * field.goal_width);
+        let back = Point::new(goal.x() - field.goal_depth, side * field.goal_width);
+        Segment::new(post, back).distance_to(at) > ROBOT_RADIUS + OFF_WALLS_M
+    });
+    let in_goal = at.y().abs() < 0.5 * field.goal_width;
+    let behind = if in_goal { IN_GOAL_MAX_M } else { field.goal_line_margin - ROBOT_RADIUS };
+    off_walls && at.x() > goal.x() - behind
 }
 
 /// The ball is so near to our area that there is hardly room behind it, and slow enough to be kicked as it

@@ -3,7 +3,7 @@
 
 use geometry::{Attack, Point};
 use protocol::{Duration, Instant, RobotId};
-use rules::contact;
+use rules::{Phase, Side, contact};
 
 use super::super::counters::Sent;
 use super::super::pass::Rating;
@@ -11,6 +11,8 @@ use super::super::view::{View, ViewBall, ViewRobot, nearest};
 
 /// A robot's centre this near the ball touches it, m.
 const TOUCHES_WITHIN_M: f32 = contact::COACH_TOUCHES_WITHIN;
+/// The opponent this near the ball takes their free kick, m.
+const TAKES_WITHIN_M: f32 = 0.6;
 /// Longest time for which a pass is waited for: 5 m take 2.5 s.
 const PASS_LASTS_MAX: Duration = Duration::millis(3000);
 /// Before this age of a pass its speed is not used: the ball is known to have moved, but not yet how fast.
@@ -54,6 +56,8 @@ pub(super) struct PassState {
     pub(super) sent: Option<Sent>,
     /// The robot that took our restart, until another robot touches the ball.
     pub(super) double_touch_blocked: Option<RobotId>,
+    /// The opponent that takes or took their restart, until another robot touches the ball: it is no threat.
+    pub(super) their_kicker: Option<RobotId>,
 }
 
 impl PassState {
@@ -62,6 +66,15 @@ impl PassState {
         let Some(ball) = view.ball else { return };
         if self.running.is_some_and(|pass| pass.is_over(view, &ball)) {
             self.running = None;
+        }
+        if view.phase == Phase::FreeKick(Side::Theirs) {
+            let kicker = nearest(view.theirs.iter(), ball.position);
+            self.their_kicker = kicker.filter(|(_, off)| *off < TAKES_WITHIN_M).map(|(robot, _)| robot.id);
+        } else if let Some(kicker) = self.their_kicker {
+            let others = view.theirs.iter().filter(|robot| robot.id != kicker).chain(view.ours.iter());
+            if view.phase != Phase::Run || is_touched(others, &ball) {
+                self.their_kicker = None;
+            }
         }
         if let Some(blocked) = self.double_touch_blocked {
             let others = view.ours.iter().filter(|robot| robot.id != blocked).chain(view.theirs.iter());

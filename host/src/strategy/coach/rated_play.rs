@@ -5,25 +5,41 @@
 use casebase::CaseBase;
 use geometry::{Attack, Point};
 use protocol::{Duration, Instant, RobotId};
+use rules::{Phase, contact};
 
 use super::super::case_candidate;
 use super::super::order::{OrderReason, Role, Task};
+use super::super::pass::reach::Mover;
 use super::super::possession::{Arrival, Possession, arrival};
 use super::super::rated::{self, Action, OfCases, Rated, RatedList};
-use super::super::roles;
 use super::super::view::{View, ViewBall, ViewRobot};
+use super::super::{restart, roles};
 use super::playable::is_left_to_the_keeper;
 use super::{Coach, Plan};
 
 /// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
 /// case.
 const CASE_PLAYER_BONUS_S: f32 = 0.5;
+/// No pass is received nearer to our area, m: the ball that is missed there is a shot.
+const PASS_OFF_OUR_AREA_M: f32 = 0.5;
 /// Interval at which the list is rated.
 const RATED_EVERY: Duration = Duration::millis(50);
 /// A ball that moved by more than this is a new situation, m.
 const BALL_MOVED_M: f32 = 0.3;
 /// Another action is better by at least this: a robot that turns round loses half a second.
 const BETTER_BY_MIN: f32 = 0.02;
+/// A pass of a restart with a smaller P(receive) waits for a better one, for as long of the 5 s (A) that the rules give.
+const POOR_PASS_P: f32 = 0.4;
+const WAITS_FOR_BETTER: Duration = Duration::millis(3000);
+/// At a restart by this, more with every second of it, and by this share of it where what was chosen is poor.
+const RESTART_BETTER_BY: f32 = 0.05;
+const POOR_SHARE: f32 = 0.4;
+/// And by this share of what it is worth: places of equal worth do not alternate.
+const BETTER_BY_SHARE: f32 = 0.25;
+/// This soon before it touches the ball, s, a robot keeps its action until that is worth this much less than when it
+/// was chosen, and half of it.
+const LOCKED_WITHIN_S: f32 = 0.35;
+const FALLS_BY_MIN: f32 = 0.06;
 /// An action must be better than a running case by at least this, P(goal): its partners have gone to their
 /// places for it. 40 matches each with 0.02, 0.06 and 0.1: 38, 33 and 29 % of the cases were reassigned, and
 /// no difference in goals was seen (docs/strategy.md).
@@ -37,6 +53,8 @@ pub(super) struct Chosen {
     rated: Instant,
     pub(super) from: Point<Attack>,
     pub(super) action: Action,
+    /// What it was worth when it was chosen.
+    worth: f32,
 }
 
 /// Memory of open play by the rated list.
@@ -45,17 +63,19 @@ pub(super) struct RatedPlay {
     /// The case base that cases are retrieved from.
     pub(super) cases: CaseBase<'static>,
     /// Robot that has the ball.
-    possession: Possession,
+    pub(super) possession: Possession,
     /// The action chosen from the list.
     pub(super) chosen: Option<Chosen>,
     /// The list that it was chosen from.
     list: RatedList,
+    /// The second robot at an opponent that has the ball.
+    pub(super) second: Option<RobotId>,
 }
 
 impl RatedPlay {
     /// Memory without a choice.
     pub(super) fn new(cases: CaseBase<'static>) -> Self {
-        Self { cases, possession: Possession::Free, chosen: None, list: RatedList::new() }
+        Self { cases, possession: Possession::Free, chosen: None, list: RatedList::new(), second: None }
     }
 
     /// Drops choice and possession when another phase starts.
@@ -78,6 +98,11 @@ impl Coach {
         self.order_double_touch_blocked(plan, &ball);
         self.order_uncovering(plan, &ball);
         self.see_pass_leave(view);
+        if let Possession::Theirs(opponent, since) = self.open_play.rated.possession
+            && !is_left_to_the_keeper(view, &ball)
+        {
+            return self.challenge(plan, &ball, (opponent, ball.position), since);
+        }
         let keepers = self.is_keepers(view, &ball);
         if let Some(at) = self.order_receiver(plan, &ball) {
             self.defend(plan, false);
@@ -90,7 +115,10 @@ impl Coach {
         }
         let first = self.first_at(view, plan, &ball);
         self.roles.ball_player = first.map(|(id, _)| id);
-        self.see_whose(view, &ball, first.map_or(f32::INFINITY, |(_, arrival)| arrival.seconds));
+        let first_seconds = first.map_or(f32::INFINITY, |(_, arrival)| arrival.seconds);
+        if let Some((opponent, at)) = self.see_whose(view, &ball, first_seconds) {
+            return self.challenge(plan, &ball, (opponent, at), view.now);
+        }
         if let Some((id, arrival)) = first
             && plan.take(id)
         {
@@ -122,26 +150,9 @@ impl Coach {
         let bound = |robot: &ViewRobot| if view.in_play.has(robot.id) { CASE_PLAYER_BONUS_S } else { 0.0 };
         let soonest =
             roles::choose(view.ours.iter().filter(may), self.roles.ball_player, roles::WORTH, |robot| {
-                of(robot).seconds - bound(robot)
+                of(robot).seconds - bound(robot) + self.wall_stays(robot.id)
             });
         soonest.and_then(|(id, _)| view.our(id)).map(|robot| (robot.id, of(robot)))
-    }
-
-    /// Updates whether the ball is theirs: they have it, or one of them is clearly sooner at it.
-    fn see_whose(&mut self, view: &View, ball: &ViewBall, ours: f32) {
-        self.open_play.attacked = match self.open_play.rated.possession {
-            Possession::Ours(..) => false,
-            Possession::Theirs(..) => true,
-            Possession::Contested(..) | Possession::Free => {
-                let limits = &self.passes.kicks().constants().opponent;
-                let goal = view.our_goal();
-                let theirs = view.theirs.iter().map(|robot| {
-                    arrival(robot, (ball, view), self.passes.kicks().ground(), limits, goal).seconds
-                });
-                let worth = if self.open_play.attacked { -roles::WORTH } else { roles::WORTH };
-                theirs.fold(f32::INFINITY, f32::min) + worth < ours
-            }
-        };
     }
 
     /// The task of the best action; `None`: it plays on.
@@ -158,15 +169,26 @@ impl Coach {
         self.order_action(plan, &action)
     }
 
-    /// The kicker's task at our kick-off, by the same list; `None` where it has neither pass nor shot.
-    pub(super) fn rated_kickoff(
+    /// The kicker's task at our kick-off or free kick, by the same list; `None` where it has neither pass nor shot.
+    /// What is not likely to reach a mate waits while the seconds run, and mates move on.
+    pub(super) fn rated_restart(
         &mut self,
         plan: &mut Plan<'_>,
         who: RobotId,
         ball: &ViewBall,
     ) -> Option<(Task, OrderReason)> {
         let action = self.choose(plan, who, ball.position, false);
-        self.order_action(plan, &action)
+        let waits = matches!(plan.view.phase, Phase::FreeKick(_))
+            && is_poor(&action)
+            && self.age(plan.view) < WAITS_FOR_BETTER;
+        let (task, why) = self.order_action(plan, &action)?;
+        Some(match task {
+            Task::Pass { at, receiver, kick, .. } if waits => {
+                (Task::Pass { at, receiver, kick, ready: false }, why)
+            }
+            Task::Kick { .. } if waits => restart::take(plan.view, ball, None),
+            _ => (task, why),
+        })
     }
 
     /// The earlier choice, unless another action is clearly better now; whether it `may_play_on`: a ball that
@@ -206,7 +228,9 @@ impl Coach {
         let of_cases = OfCases { pass, retrieved };
         let mut list = rated::rate(view, &mut self.passes, who, from, of_cases);
         list.retain(|rated| match rated.action {
-            Action::Pass { receiver, .. } => receives(receiver),
+            Action::Pass { receiver, rating } => {
+                receives(receiver) && !view.in_our_area(rating.at, PASS_OFF_OUR_AREA_M)
+            }
             Action::PlayOn => may_play_on,
             _ => true,
         });
@@ -219,15 +243,40 @@ impl Coach {
         let is_of_case = |action| matches!(action, Action::Case(_) | Action::PlayOn);
         let better = match again {
             Some(again) if plays_case && is_of_case(again.action) => CASE_MARGIN,
-            _ => BETTER_BY_MIN,
+            // A kicker that turns round gives a marker beside the ball the time to follow.
+            Some(again) if view.phase != Phase::Run => {
+                let poor = if is_poor(&again.action) { POOR_SHARE } else { 1.0 };
+                RESTART_BETTER_BY * poor * (1.0 + self.age(view).as_secs_f32())
+            }
+            _ => BETTER_BY_MIN.max(BETTER_BY_SHARE * best.1.abs()),
         };
-        let (action, from) = match again {
-            Some(again) if best.1 < again.worth + better => (again.action, there.unwrap_or(from)),
-            _ => (best.0, from),
+        // At the ball it is only given up for a reason of its own.
+        let fell = |again: &Rated| {
+            kept.is_none_or(|chosen| again.worth < chosen.worth - FALLS_BY_MIN.max(0.5 * chosen.worth.abs()))
         };
-        self.open_play.rated.chosen = Some(Chosen { who, rated: view.now, from, action });
+        let locked = view.our(who).is_some_and(|robot| {
+            let mover = Mover::new(robot.position, robot.velocity, &self.passes.kicks().constants().receiver);
+            mover.time_to_touch(from, contact::TOUCHES_WITHIN) < LOCKED_WITHIN_S
+        });
+        let is_kept = |again: &Rated| best.1 < again.worth + better || locked && !fell(again);
+        let (action, from, worth) = match again.filter(is_kept) {
+            Some(again) => {
+                let worth = kept.map_or(again.worth, |chosen| chosen.worth.max(again.worth));
+                (again.action, there.unwrap_or(from), worth)
+            }
+            None => (best.0, from, best.1),
+        };
+        self.open_play.rated.chosen = Some(Chosen { who, rated: view.now, from, action, worth });
         self.open_play.rated.list = list;
         action
+    }
+}
+
+/// A clearance, or a pass that is hardly received.
+fn is_poor(action: &Action) -> bool {
+    match action {
+        Action::Clear { .. } => true,
+        _ => action.pass().is_some_and(|(_, rating)| rating.receive() < POOR_PASS_P),
     }
 }
 

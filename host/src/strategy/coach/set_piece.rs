@@ -190,15 +190,16 @@ impl Coach {
         if let Some((task, why)) = self.coerce(plan, id, &ball) {
             return plan.order(id, Role::Kicker, task, why);
         }
-        if self.tactics.rated
-            && matches!(view.phase, Phase::Kickoff(_))
-            && let Some((task, why)) = self.rated_kickoff(plan, id, &ball)
-        {
-            return plan.order(id, Role::Kicker, task, why);
-        }
         // At a kick-off all have stood in their places since it was prepared.
         let free_kick = matches!(view.phase, Phase::FreeKick(_));
         let wait = if free_kick { AIMED_AFTER } else { Duration(0) };
+        if self.tactics.rated
+            && (free_kick && !self.tactics.pass_ahead || matches!(view.phase, Phase::Kickoff(_)))
+            && self.age(view) >= wait
+            && let Some((task, why)) = self.rated_restart(plan, id, &ball)
+        {
+            return plan.order(id, Role::Kicker, task, why);
+        }
         let stands = self.restart.ahead.is_some()
             || self.restart.aim.is_some_and(|(since, _)| view.now.since(since) < AIM_KEPT);
         if self.age(view) >= wait && !stands {

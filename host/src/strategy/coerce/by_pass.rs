@@ -39,9 +39,10 @@ impl<'k> ByPassLocation<'k> {
             length: path.norm(),
             body: rules::limits::ROBOT_RADIUS + rules::limits::BALL_RADIUS,
             reaction: c.reaction,
+            covered: 0.0,
         };
         let mover = Mover::new(opponent.position, opponent.velocity, &c.opponent);
-        let found = path.flat(kick, &[PassOpponent { id: opponent.id, mover }]);
+        let found = path.flat(kick, &[PassOpponent { id: opponent.id, mover, head_start: 0.0 }]);
         1.0 - not_intercepted(found.map_or(SAFE, |found| found.margin), false, c)
     }
 }

@@ -20,6 +20,9 @@ pub const SAFE: f32 = 0.6;
 const REACTION_FADES_M: f32 = 0.1;
 /// 2 √(0.1 m / 3.5 m/s²), s.
 const REACTION_TIME_S: f32 = 0.338;
+/// At a restart no opponent touches a ball nearer to its place than this, m, without a start: the rules' 0.5 m and its
+/// body, less what it reaches.
+const KEPT_OFF_M: f32 = 0.48;
 /// Places nearer to each other than this count as equal, m.
 const SAME_PLACE_WITHIN_M: f32 = 0.02;
 
@@ -30,6 +33,8 @@ pub struct PassOpponent {
     pub id: RobotId,
     /// Motion and limits of the opponent.
     pub mover: Mover,
+    /// Time for which it moves before the kick, s.
+    pub head_start: f32,
 }
 
 /// The opponent with the least margin, and its place.
@@ -56,6 +61,8 @@ pub struct BallPath {
     pub body: f32,
     /// Delay until an opponent detects the kick, s.
     pub reaction: f32,
+    /// The end of the path that the receiver's body covers, m.
+    pub covered: f32,
 }
 
 impl BallPath {
@@ -74,7 +81,9 @@ impl BallPath {
     ) -> Option<Interceptor> {
         let end = kick.at(self.length);
         self.worst(opponents, end.0, enough, |opponent, worst| {
-            self.stretch(opponent, (0.0, self.length), end, |s| kick.at(s), worst);
+            let length = self.open_to(opponent);
+            let end = if length < self.length { kick.at(length) } else { end };
+            self.stretch(opponent, (0.0, length), end, |s| kick.at(s), worst);
         })
     }
 
@@ -83,8 +92,10 @@ impl BallPath {
         let end = kick.at(self.length);
         let (up, down) = kick.over;
         self.worst(opponents, end.0, -SAFE, |opponent, worst| {
+            let length = self.open_to(opponent);
+            let end = if length < self.length { kick.at(length) } else { end };
             self.stretch(opponent, (0.0, up), kick.at(up), |s| kick.at(s), worst);
-            self.stretch(opponent, (down, self.length), end, |s| kick.at(s), worst);
+            self.stretch(opponent, (down, length), end, |s| kick.at(s), worst);
         })
     }
 
@@ -101,9 +112,10 @@ impl BallPath {
             // worse than the known one.
             let (foot, across) = self.seen(opponent);
             let beyond = (foot - self.length).max(-foot).max(0.0);
-            let reach = opponent.mover.farthest_touched(arrival + worst.margin - self.reaction)
-                + self.body
-                + REACTION_FADES_M;
+            let reach =
+                opponent.mover.farthest_touched(arrival + worst.margin - self.reaction + opponent.head_start)
+                    + self.body
+                    + REACTION_FADES_M;
             if beyond * beyond + across * across <= reach * reach {
                 look(opponent, &mut worst);
             }
@@ -112,6 +124,11 @@ impl BallPath {
             }
         }
         (worst.margin < SAFE).then_some(worst)
+    }
+
+    /// The part of the path on which the opponent may have the ball before the receiver, m.
+    fn open_to(&self, opponent: &PassOpponent) -> f32 {
+        if opponent.head_start > 0.0 { self.length } else { (self.length - self.covered).max(0.0) }
     }
 
     /// The opponent's position along the path, and beside it, m.
@@ -162,7 +179,11 @@ impl BallPath {
     #[inline]
     fn look(&self, opponent: &PassOpponent, along: f32, ball_time: f32, worst: &mut Interceptor) -> f32 {
         let place = self.from + self.along * along;
-        let time = self.touch_time(&opponent.mover, place);
+        let mut time = self.touch_time(&opponent.mover, place);
+        if opponent.head_start > 0.0 {
+            // Until the kick it keeps the distance that the rules ask for.
+            time = (time - opponent.head_start).max(opponent.mover.time_from_rest(KEPT_OFF_M - along));
+        }
         if time - ball_time < worst.margin {
             *worst = Interceptor { id: opponent.id, margin: time - ball_time, along };
         }
@@ -192,12 +213,12 @@ mod tests {
     fn opponent(id: u8, at: (f32, f32), velocity: (f32, f32)) -> PassOpponent {
         let (at, velocity) = (Point::new(at.0, at.1), Vector::new(velocity.0, velocity.1));
         let mover = Mover::new(at, velocity, &FreeLimits::default());
-        PassOpponent { id: RobotId::new(id).unwrap(), mover }
+        PassOpponent { id: RobotId::new(id).unwrap(), mover, head_start: 0.0 }
     }
 
     fn path(length: f32) -> BallPath {
         let (from, along) = (Point::new(0.0, 0.0), Vector::new(1.0, 0.0));
-        BallPath { from, along, length, body: 0.1115, reaction: 0.1 }
+        BallPath { from, along, length, body: 0.1115, reaction: 0.1, covered: 0.0 }
     }
 
     fn kicks() -> Kicks {

@@ -62,6 +62,12 @@ impl Mover {
         self.time_along(distance, closing)
     }
 
+    /// Time in which it covers a distance from standstill, without braking, s.
+    #[inline]
+    pub fn time_from_rest(&self, distance: f32) -> f32 {
+        math::sqrt(2.0 * distance.max(0.0) * self.per_acceleration)
+    }
+
     /// Metres by which a path of `distance` from standstill may grow per additional second: the highest speed
     /// on that path, m/s.
     #[inline]

@@ -6,8 +6,8 @@
 
 use geometry::{Attack, Field, GoalEnd, Point, Shape, Vector};
 use protocol::RobotId;
-use rules::Phase;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
+use rules::{Phase, Side};
 
 use super::super::value;
 use super::super::view::{ROBOTS_MAX, View, ViewRobot};
@@ -24,6 +24,20 @@ const SAME_PLACE_WITHIN_M: f32 = 1e-3;
 const KEEPER_MATTERS_BEYOND_M: f32 = 2.8;
 /// Nine factors in another order differ by less than 10⁻⁶.
 const ROUNDING_FACTOR: f32 = 1.0 + 1e-5;
+/// Time that an opponent beside the ball uses before our free kick leaves, s: it steps towards where the kicker
+/// turns, and it lines up for 1.0 to 1.5 s.
+const STEPS_IN_S: f32 = 1.0;
+/// Opponents this near the ball do, m: as near as the rules permit, and a step.
+const STEPS_IN_WITHIN_M: f32 = 1.2;
+/// Share of the chips of our free kicks that arrive, against the usual chip's: the ball lies where it is kicked
+/// from, and the receiver stands where it comes. A guess that the drill `marker` supports; not measured by itself.
+const RESTART_CHIP_PRIOR: f32 = 0.9;
+/// What having the ball is worth more than a ball lost, out of our half: there places are compared by whether they
+/// keep it.
+const HELD_IN_OUR_HALF: f32 = 0.1;
+/// At our free kicks the receiver stands there when the ball leaves, and goes towards it: a marker beside or behind it
+/// does not get this last part of the ball's way, m.
+const RECEIVER_COVERS_M: f32 = 0.8;
 /// A chip that ends in a goal less often than this is not considered: one in two hundred.
 const CHIP_GOAL_P_MIN: f32 = 0.005;
 
@@ -117,6 +131,12 @@ pub struct PassScene<'k> {
     keeps: bool,
     /// Whether the receiver must not start before the kick: at a kick-off it must stay in our half.
     waits: bool,
+    /// Share of the chips past all opponents that arrive.
+    chip_prior: f32,
+    /// What having the ball is worth anywhere, 0–1.
+    held_at_least: f32,
+    /// The end of the ball's way that the receiver's body covers, m.
+    covered: f32,
 }
 
 impl<'k> PassScene<'k> {
@@ -133,6 +153,7 @@ impl<'k> PassScene<'k> {
         let others =
             view.ours.iter().filter(|teammate| teammate.id != receiver.id && Some(teammate.id) != passer);
         let (length, width) = (view.field.length, view.field.width);
+        let restart = view.phase == Phase::FreeKick(Side::Ours);
         // The field is the same seen from either end, so its areas have the same places in the attack frame.
         Self {
             kicks,
@@ -141,7 +162,11 @@ impl<'k> PassScene<'k> {
             opponents: view
                 .theirs
                 .iter()
-                .map(|robot| PassOpponent { id: robot.id, mover: mover(robot, &c.opponent) })
+                .map(|robot| {
+                    let steps_in = restart && robot.position.distance(from) < STEPS_IN_WITHIN_M;
+                    let head_start = if steps_in { STEPS_IN_S } else { 0.0 };
+                    PassOpponent { id: robot.id, mover: mover(robot, &c.opponent), head_start }
+                })
                 .take(ROBOTS_MAX)
                 .collect(),
             teammates: others.map(|teammate| teammate.position).collect(),
@@ -156,6 +181,9 @@ impl<'k> PassScene<'k> {
             shot: kicks.shot(),
             keeps: false,
             waits: matches!(view.phase, Phase::PrepareKickoff(_) | Phase::Kickoff(_)),
+            chip_prior: if restart { RESTART_CHIP_PRIOR } else { c.chip_prior },
+            held_at_least: if from.x() < 0.0 { HELD_IN_OUR_HALF } else { 0.0 },
+            covered: if restart { RECEIVER_COVERS_M } else { 0.0 },
         }
     }
 
@@ -211,7 +239,7 @@ impl<'k> PassScene<'k> {
         let length = off.norm();
         let along = if length > SAME_PLACE_WITHIN_M { off * (1.0 / length) } else { Vector::new(1.0, 0.0) };
         let reaction = self.kicks.constants().reaction;
-        BallPath { from: self.from, along, length, body: self.opening.body, reaction }
+        BallPath { from: self.from, along, length, body: self.opening.body, reaction, covered: self.covered }
     }
 
     /// Rates it, if its value is above `floor`; below, it costs less.
@@ -224,7 +252,7 @@ impl<'k> PassScene<'k> {
     fn weigh(&self, at: Point<Attack>, floor: f32) -> Rating {
         let c = self.kicks.constants();
         let path = self.path(at - self.from);
-        let BallPath { along, length, .. } = path;
+        let (along, length) = (path.along, at.distance(self.from));
         let spoiler = self.spoiler(at, c);
         let goal = Point::new(self.opening.x, 0.0);
         let mut rating = Rating {
@@ -249,7 +277,11 @@ impl<'k> PassScene<'k> {
             interceptor: None,
             spoiler,
             shot: ShotFrom { aim: goal, angle: 0.0, time: 0.0, one_touch: false },
-            held: if self.keeps { value::of_ours(self.opening.x, at).max(0.0) } else { 0.0 },
+            held: if self.keeps {
+                (value::of_ours(self.opening.x, at) + self.held_at_least).max(0.0)
+            } else {
+                0.0
+            },
         };
         // The product so far, slightly enlarged for rounding: a floor that it does not exceed is not exceeded
         // by the value either.
@@ -300,15 +332,16 @@ impl<'k> PassScene<'k> {
         let flat = rating.receive_factors[1] * rating.receive_factors[2];
         let others = rating.value() / flat.max(f32::MIN_POSITIVE);
         // Neither above the flat pass, nor above the floor.
-        if flat >= c.chip_prior || others * c.chip_prior <= floor.max(CHIP_GOAL_P_MIN) {
+        if flat >= self.chip_prior || others * self.chip_prior <= floor.max(CHIP_GOAL_P_MIN) {
             return;
         }
-        let Some(kick) = self.kicks.chip(path.length) else { return };
+        let length = rating.at.distance(self.from);
+        let Some(kick) = self.kicks.chip(length) else { return };
         let interceptor = path.chip(&kick, &self.opponents);
-        let ball_time = kick.at(path.length).0;
+        let ball_time = kick.at(length).0;
         let mut chip = *rating;
-        chip.receive_factors[1] =
-            given::not_intercepted(interceptor.map_or(SAFE, |found| found.margin), true, c);
+        chip.receive_factors[1] = self.chip_prior
+            * given::not_intercepted(interceptor.map_or(SAFE, |found| found.margin), false, c);
         chip.receive_factors[2] = self.time_to_react(ball_time, rating.receiver_time, c);
         chip.goal_factors[2] = given::shot_in_time(false, c);
         if chip.value() > rating.value() {

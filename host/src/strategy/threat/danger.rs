@@ -11,11 +11,9 @@ use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::angle::{BODY, Opening, widest};
 use super::cover::Cover;
 use super::edge::Edge;
-use super::receiving::{Because, FirstLevel};
+use super::receiving::{Because, FirstLevel, HAS_BALL_WITHIN_M};
 use super::{Memory, ThreatSettings, legal};
 
-/// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
-const HAS_BALL_WITHIN_M: f32 = 0.2;
 /// Passes arrive with this speed, m/s, at which a receiver can shoot at once.
 const PASS_ARRIVAL_M_S: f32 = 2.5;
 /// Fastest shot, m/s: the rules' 6.5 less a kicker's error.
@@ -93,7 +91,7 @@ pub fn dangers(
 
 /// The opponent that has the ball: it is the first-level threat by the ball's place.
 fn holder(view: &View, threat: &FirstLevel) -> Option<RobotId> {
-    let at_ball = super::super::view::nearest(view.theirs.iter(), threat.at);
+    let at_ball = super::super::view::nearest(view.theirs.iter(), view.ball?.position);
     at_ball
         .filter(|(_, off)| threat.because == Because::Ball && *off < HAS_BALL_WITHIN_M)
         .map(|(robot, _)| robot.id)

@@ -45,6 +45,8 @@ pub struct ThreatSettings {
     pub hold: f32,
     /// Difference by which another opponent's risk must be greater to replace it, s.
     pub risk_worth: f32,
+    /// Keeper and primaries cover the place of a carried ball after this time, s.
+    pub carried_for: f32,
     /// Primary defenders' centres are this far outside our area, m: a body (0.09) and the error of tracking
     /// and control.
     pub off_area: f32,
@@ -94,6 +96,7 @@ impl Default for ThreatSettings {
             risk_threshold: -1.0,
             hold: 1.3,
             risk_worth: 0.2,
+            carried_for: 0.35,
             off_area: 0.13,
             shoulder: 0.105,
             keeper_back: 0.125,

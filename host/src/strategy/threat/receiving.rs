@@ -3,8 +3,11 @@
 use geometry::{Attack, Point, Vector};
 use protocol::RobotId;
 
-use super::super::view::View;
+use super::super::view::{View, nearest};
 use super::ThreatSettings;
+
+/// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
+pub(super) const HAS_BALL_WITHIN_M: f32 = 0.2;
 
 /// Equation 6: −(|d| / |v|) · (1 + c · (1 − cos θ)), s, at most 0; greater is riskier.
 ///
@@ -76,7 +79,10 @@ pub fn first_level(view: &View, before: Option<FirstLevel>, settings: &ThreatSet
     };
     let held = before.and_then(|threat| threat.receiver());
     let ease = if held.is_some() { settings.hold } else { 1.0 };
-    let here = FirstLevel { at: ball.position, because: Because::Ball };
+    // Who has the ball may carry it on.
+    let carrier = nearest(view.theirs.iter(), ball.position).filter(|(_, off)| *off < HAS_BALL_WITHIN_M);
+    let carried = carrier.map_or(Vector::default(), |(robot, _)| robot.velocity * settings.carried_for);
+    let here = FirstLevel { at: ball.position + carried, because: Because::Ball };
     let fast = ball.velocity.norm() * ease >= settings.pass_speed;
     if !fast || comes_at_goal(view, ball.position, ball.velocity) {
         return here;
@@ -96,6 +102,9 @@ pub fn first_level(view: &View, before: Option<FirstLevel>, settings: &ThreatSet
     }
     match best {
         Some((opponent, at, risk, _)) if risk > settings.risk_threshold * ease => {
+            // It shoots from where it meets the ball.
+            let along = ball.velocity.unit().unwrap_or_default();
+            let at = ball.position + along * (at - ball.position).dot(along).max(0.0);
             FirstLevel { at, because: Because::PassTo { opponent, risk } }
         }
         _ => here,

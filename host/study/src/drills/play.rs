@@ -15,6 +15,7 @@ use super::start::{DrillStart, OUR_END, Opening};
 use super::{DrillKind, DrillRow};
 use crate::matches::MatchTeam;
 use arena::game::{Game, GameConfig, GameError, NoWatcher};
+use geometry::{Pose, Vector};
 use protocol::Who;
 
 /// Who has the ball after ours have played it.
@@ -58,10 +59,13 @@ pub(super) fn play(
         }
     }
     place(&mut game, start);
-    let settled = game.time() + SETTLES_S;
-    while game.time() < settled {
-        game.step(&mut NoWatcher)?;
-    }
+    // The cameras see the ball before a robot stands over it.
+    let lead = start.theirs[start.lead];
+    let back = lead.position - Vector::polar(STANDS_BACK_M, lead.heading);
+    game.put_robot(them(start.lead), Pose { position: back, ..lead });
+    settle(&mut game, SETTLES_S)?;
+    game.put_robot(them(start.lead), lead);
+    settle(&mut game, COVERS_S)?;
     let mut script = Script::new(drill, start);
     let begun = match start.opening {
         Opening::OpenPlay => {
@@ -77,6 +81,14 @@ pub(super) fn play(
     row.played = true;
     watch(&mut game, &mut script, drill, &mut row)?;
     Ok(row)
+}
+
+fn settle(game: &mut Game<'_>, seconds: f64) -> Result<(), GameError> {
+    let settled = game.time() + seconds;
+    while game.time() < settled {
+        game.step(&mut NoWatcher)?;
+    }
+    Ok(())
 }
 
 fn place(game: &mut Game<'_>, start: &DrillStart) {
@@ -184,6 +196,9 @@ const BESIDE_POST_M: f32 = 0.2;
 const BEGINS_WITHIN_S: f64 = 10.0;
 /// Time in HALT until the host has seen where everything is, s: 30 frames of the cameras.
 const SETTLES_S: f64 = 0.5;
+/// Until then the opponent at the ball stands this far back, m; then for this time at the ball, s: 6 frames.
+const STANDS_BACK_M: f32 = 0.25;
+const COVERS_S: f64 = 0.1;
 /// Longest try, with stop and free kick, s.
 const LASTS_MAX_S: f64 = 60.0;
 /// A ball this far from where it lay has been cleared, m.

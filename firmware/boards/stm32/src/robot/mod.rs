@@ -1,7 +1,7 @@
 //! `robot`: the start of the robot's board, and what it has. The program names its radio.
 //!
-//! A step of the brain of 40,000 instructions, its budget, takes a fifth of a millisecond here; the longest
-//! in docs/firmware.md takes three times as long. A control step may be late by this time.
+//! A step of the brain of 36,000 instructions, its budget, takes a fifth of a millisecond here. A control
+//! step may be late by this time.
 
 /// A robot's board with an STM32H743.
 struct Stm32;

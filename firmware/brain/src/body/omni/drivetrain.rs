@@ -6,12 +6,12 @@
 //! ([`Intent::KeepPath`]). SI, body frame out.
 
 use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
-use motion::avoid::{self, Course, Restraint, RouteVerdict};
+use motion::avoid::{self, Carried, Course, Restraint};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::Instant;
 use protocol::robot_io::{OmniKick, WHEELED_STEP};
 use rules::limits::ROBOT_RADIUS;
-use rules::{FieldSpec, Phase, RobotSpec, RuleRole, Side};
+use rules::{Phase, RobotSpec, RuleRole, Side};
 
 use super::surroundings::Surroundings;
 use super::{Drive, DriveMode};
@@ -34,6 +34,11 @@ pub struct Drivetrain {
     step: f32,
     /// The path in use; `None` while the robot stands.
     under_way: Option<CurrentPath>,
+    carried: Carried<Field>,
+    /// Instructions that inputs took in this step.
+    spent: u32,
+    /// Number of steps since the path was planned.
+    path_age: u8,
 }
 
 /// Result of the last path planning.
@@ -42,8 +47,6 @@ struct CurrentPath {
     drive: Drive,
     /// The goal, or a point past the first corner of the path to it; `None` while the robot brakes.
     towards: Option<Point<Field>>,
-    /// Whether it leads around something.
-    winds: bool,
 }
 
 impl Drivetrain {
@@ -75,13 +78,13 @@ impl Drivetrain {
                 } else {
                     Drive::avoiding(here, heading)
                 };
-                self.follow(belief, step, &drive)
+                self.follow(belief, step, &drive, under_way)
             }
             Intent::Walk { to, face, avoid_ball } => {
                 let drive = if avoid_ball { Drive::avoiding(to, face) } else { Drive::bold(to, face) };
-                self.follow(belief, step, &drive)
+                self.follow(belief, step, &drive, under_way)
             }
-            Intent::Drive(drive) => self.follow(belief, step, &drive),
+            Intent::Drive(drive) => self.follow(belief, step, &drive, under_way),
             // Wheels have no legs.
             Intent::Carry { .. } | Intent::Grab | Intent::Kick(_) => Wanted::STAND,
         }
@@ -95,9 +98,9 @@ impl Drivetrain {
         self.angular = twist.angular;
     }
 
-    /// Whether the last path led around something: planning such a path takes longer.
-    pub fn winds(&self) -> bool {
-        self.under_way.is_some_and(|path| path.winds)
+    /// Tells it how many instructions the inputs of this step took: so many fewer are left for planning.
+    pub fn set_spent(&mut self, instructions: u32) {
+        self.spent = instructions;
     }
 
     fn stand(&mut self, belief: &Belief, step: f32, face: Option<Angle>) -> Wanted {
@@ -109,33 +112,57 @@ impl Drivetrain {
         self.velocity.clamped((self.velocity.norm() - LIMITS.braking * step).max(0.0))
     }
 
-    /// Follows the same path, and turns to the same heading, without planning.
+    /// Follows the same path, and turns to the same heading, without planning; brakes on a path that is too
+    /// old.
     fn keep_path(&mut self, belief: &Belief, step: f32, path: CurrentPath) -> Wanted {
         self.under_way = Some(path);
+        self.path_age = self.path_age.saturating_add(1);
         let CurrentPath { drive, towards, .. } = path;
         let velocity = match towards {
-            Some(to) => {
+            Some(to) if self.path_age <= PATH_AGE_MAX => {
                 let from = belief.pose.position + self.moves_on;
-                limits(belief, &drive).plan(from, self.velocity, to).at(step).velocity
+                let next = limits(belief, &drive).plan(from, self.velocity, to).at(step).velocity;
+                if belief.is_placing() { next } else { short_of_bodies(belief, next) }
             }
-            None => self.braked(step),
+            _ => self.braked(step),
         };
         self.wanted(belief, step, velocity, Some(drive.face), &drive)
     }
 
-    fn follow(&mut self, belief: &Belief, step: f32, drive: &Drive) -> Wanted {
+    fn follow(
+        &mut self,
+        belief: &Belief,
+        step: f32,
+        drive: &Drive,
+        under_way: Option<CurrentPath>,
+    ) -> Wanted {
         let from = belief.pose.position + self.moves_on;
+        let path_age = core::mem::take(&mut self.path_age);
         let rests = self.velocity.norm() < THERE_SPEED;
         if rests && from.distance(drive.to) < AT_PLACE && !is_moved_by_the_rules(belief.game.phase) {
             // No plan is needed.
-            self.under_way = Some(CurrentPath { drive: *drive, towards: None, winds: false });
+            self.under_way = Some(CurrentPath { drive: *drive, towards: None });
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
         }
         let field = belief.league().field();
-        let (effort, effort_to_leave) = efforts(belief, &field);
         let mut around = Surroundings::none(&field);
         around.look(belief, &field, drive.to, drive.mode);
-        let path = avoid::plan(&Course {
+        let effort = self.effort(belief, drive);
+        let search = |obstacles: usize| avoid::effort_least(obstacles) + EFFORT_OF_SEARCH;
+        // Too little for all that is around: the path of a few steps before has looked at all of it.
+        if effort < search(around.obstacles.len())
+            && path_age < PATH_AGE_MAX
+            && let Some(path) = under_way.filter(|path| path.towards.is_some())
+        {
+            self.path_age = path_age;
+            return self.keep_path(belief, step, CurrentPath { drive: *drive, ..path });
+        }
+        // Where the effort is too small for all robots the drive only slows down for those far away.
+        while effort < search(around.obstacles.len()) && around.leave_out_farthest(from) {}
+        if effort < avoid::effort_least(around.obstacles.len()) {
+            return self.stand(belief, step, Some(drive.face));
+        }
+        let course = Course {
             from,
             velocity: self.velocity,
             to: drive.to,
@@ -144,15 +171,10 @@ impl Drivetrain {
             within: Some(around.within),
             step,
             effort,
-            effort_to_leave,
-            checks: if effort >= EFFORT_TAKING { avoid::CHECKS_LONG } else { avoid::CHECKS_MAX },
-        });
+        };
+        let path = avoid::plan(&course, &mut self.carried);
         let is_free = path.restraint == Restraint::None;
-        self.under_way = Some(CurrentPath {
-            drive: *drive,
-            towards: is_free.then(|| path.motion.to()),
-            winds: is_free && path.verdict != RouteVerdict::Direct,
-        });
+        self.under_way = Some(CurrentPath { drive: *drive, towards: is_free.then(|| path.motion.to()) });
         let there = rests && from.distance(path.goal) < AT_PLACE;
         // While we place the ball the others keep off, and the step has no time for it.
         let velocity = match path.next.velocity {
@@ -161,6 +183,18 @@ impl Drivetrain {
             next => short_of_bodies(belief, next),
         };
         self.wanted(belief, step, velocity, Some(drive.face), drive)
+    }
+
+    /// Instructions that are left for planning a path.
+    fn effort(&self, belief: &Belief, drive: &Drive) -> u32 {
+        let stopped = is_moved_by_the_rules(belief.game.phase);
+        let skill = match belief.game.phase {
+            Phase::BallPlacement(Side::Ours) => EFFORT_OF_TAKING,
+            _ if stopped && belief.game.rule_role == RuleRole::Kicker => EFFORT_OF_TAKING,
+            _ if stopped => 0,
+            _ => EFFORT_OF_PLAY,
+        };
+        EFFORT.saturating_sub(skill + drive.effort + self.spent)
     }
 
     fn wanted(
@@ -234,28 +268,6 @@ fn half_turn(angular: f32, step: f32) -> Angle {
     Angle::new(0.5 * (angular * step))
 }
 
-/// Planning effort that a step may spend on a path, and on a path out of a forbidden region. It is what the
-/// other work of the step leaves of 40,000 instructions (`qemu_wheels`).
-fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
-    let ball_moves = belief.ball.as_ref().is_some_and(|ball| ball.velocity.norm() > BALL_MOVES);
-    let stopped = is_moved_by_the_rules(belief.game.phase);
-    let effort = match belief.game.phase {
-        // From behind a goal the path into its opening is long.
-        _ if belief.pose.position.x().abs() > 0.5 * field.length => EFFORT_BEHIND_GOAL,
-        Phase::BallPlacement(Side::Ours) => EFFORT_TAKING,
-        _ if stopped && belief.game.rule_role == RuleRole::Kicker => EFFORT_TAKING,
-        _ if stopped => EFFORT_STOPPED,
-        _ if ball_moves => EFFORT_BALL_MOVES,
-        _ => EFFORT_BALL_RESTS,
-    };
-    let to_leave = match effort {
-        EFFORT_BEHIND_GOAL if stopped => EFFORT_BEHIND_GOAL_TO_LEAVE,
-        _ if stopped => EFFORT_STOPPED_TO_LEAVE,
-        _ => EFFORT_TO_LEAVE,
-    };
-    (effort, to_leave)
-}
-
 /// Robots within this distance are slowed for, m: two that close at 3 m/s are a third of a second apart.
 const NOTICES: f32 = 1.0;
 /// Centres that pass this far apart do not touch, m: two radii, and what positions and directions err by.
@@ -266,25 +278,19 @@ const CONTROL_DELAY_S: f32 = 0.12;
 const TOUCHES_AT: f32 = 1.0;
 /// Deceleration down to that, m/s²: what weak brakes do (estimate).
 const BOTH_BRAKE: f32 = 2.0;
-/// In play: eight pieces among three obstacles, five among a dozen; only what stands near the path is an
-/// obstacle. The interception of a moving ball is computed in the same step.
-const EFFORT_BALL_MOVES: u32 = 94;
-/// The same while the ball is stationary.
-const EFFORT_BALL_RESTS: u32 = 126;
-/// The same while the ball is not in play: neither a case nor an interception is computed then.
-const EFFORT_STOPPED: u32 = 200;
-/// Behind a goal line.
-const EFFORT_BEHIND_GOAL: u32 = 312;
-/// The same for a robot that places the ball or kicks a restart: it also plans a path behind the ball.
-const EFFORT_TAKING: u32 = 180;
-/// A path out of a forbidden region while the ball is not in play.
-const EFFORT_STOPPED_TO_LEAVE: u32 = 400;
-/// The same behind a goal line.
-const EFFORT_BEHIND_GOAL_TO_LEAVE: u32 = 460;
-/// A path out of a forbidden region in play, where a step may retrieve a case too.
-const EFFORT_TO_LEAVE: u32 = 38;
-/// A ball faster than this is intercepted, m/s.
-const BALL_MOVES: f32 = 0.05;
+/// Number of steps for which a path is followed without planning again, as in a flood of packets that take
+/// the whole step: 0.2 s, the age of a command that is too old.
+const PATH_AGE_MAX: u8 = 20;
+/// Instructions that a step leaves for inputs, a search of its skill and planning a path: 36,000
+/// (docs/architecture.md §9) less what every step takes, a message sent, and what estimates err by. By 180 s
+/// of six images: the worst of 108,000 steps took 34,285 instructions, 999 of 1,000 at most 33,300.
+const EFFORT: u32 = 18_000;
+/// Instructions of a skill in play, where a case is carried out.
+const EFFORT_OF_PLAY: u32 = 3_500;
+/// Instructions that a plan among obstacles has besides the least, for a search.
+const EFFORT_OF_SEARCH: u32 = 1_500;
+/// Instructions of placing the ball or kicking a restart: it also plans a path behind the ball.
+const EFFORT_OF_TAKING: u32 = 1_000;
 
 /// Whether the allowed positions of a robot change in this phase without a new directive: with the ball, or
 /// with the phase itself.

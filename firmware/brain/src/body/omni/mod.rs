@@ -46,6 +46,8 @@ pub struct Drive {
     pub armed: bool,
     /// Share of the acceleration that a held ball is moved with.
     pub gentle: f32,
+    /// Instructions that choosing the target took, by the search's estimate: its path has so much less.
+    pub effort: u32,
 }
 
 /// How a robot treats the ball on its path.
@@ -71,6 +73,7 @@ impl Drive {
             kick: OmniKick::None,
             armed: true,
             gentle: 1.0,
+            effort: 0,
         }
     }
 

@@ -20,12 +20,14 @@ pub struct Surroundings {
     pub obstacles: heapless::Vec<Obstacle<Field>, OBSTACLES_MAX>,
     /// Region to stay in.
     pub within: Shape<Field>,
+    /// Number of obstacles that are no robots; they come first.
+    pub fixed: usize,
 }
 
 impl Surroundings {
     /// An empty value to be filled by [`Surroundings::look`]; it is too large to be moved around.
     pub fn none(field: &FieldSpec) -> Self {
-        Self { obstacles: heapless::Vec::new(), within: field.surface().grown(-BODY - BORDER) }
+        Self { obstacles: heapless::Vec::new(), within: field.surface().grown(-BODY - BORDER), fixed: 0 }
     }
 
     /// Collects what matters to this robot on its path to `to`.
@@ -77,15 +79,25 @@ impl Surroundings {
                 self.add_goal(field, goal);
             }
         }
+        self.fixed = self.obstacles.len();
         // Close to the ball bodies touch: a robot that went around every opponent there would never have it.
         let margin = if mode == DriveMode::Avoiding { ROBOTS } else { ROBOTS_AT_BALL };
         let radius = 2.0 * BODY + margin;
-        for other in &belief.others {
-            let at = other.pose.position;
-            let speed = other.velocity.x().abs() + other.velocity.y().abs();
-            let reach = radius + ASIDE + ASIDE_FOR * speed;
-            if leaves || path.distance_to(at) < reach || stops.distance_to(at) < reach {
-                self.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
+        // Out of a region all others count; first those that it could reach before it is planned again.
+        for is_first in [true, false] {
+            if !(is_first || leaves) {
+                break;
+            }
+            for other in &belief.others {
+                let at = other.pose.position;
+                let speed = other.velocity.x().abs() + other.velocity.y().abs();
+                let reach = radius + ASIDE + ASIDE_FOR * speed;
+                let is_close = leaves && at.distance(me) < LEAVES_PAST
+                    || path.distance_to(at) < reach
+                    || stops.distance_to(at) < reach;
+                if is_close == is_first {
+                    self.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
+                }
             }
         }
     }
@@ -94,6 +106,17 @@ impl Surroundings {
     /// robots keep their distance too.
     fn add(&mut self, obstacle: Obstacle<Field>) {
         let _ = self.obstacles.push(obstacle);
+    }
+
+    /// Leaves out the robot that is farthest from `me`; `false` where none is left.
+    pub fn leave_out_farthest(&mut self, me: Point<Field>) -> bool {
+        let away = |obstacle: &Obstacle<Field>| match obstacle.shape {
+            Shape::Disc { center, .. } => center.distance(me),
+            Shape::Box { .. } | Shape::Capsule { .. } => 0.0,
+        };
+        let robots = self.obstacles.iter().enumerate().skip(self.fixed);
+        let farthest = robots.max_by(|(_, a), (_, b)| away(a).total_cmp(&away(b))).map(|(i, _)| i);
+        farthest.map(|i| self.obstacles.swap_remove(i)).is_some()
     }
 
     fn add_goal(&mut self, field: &FieldSpec, goal: GoalEnd) {
@@ -202,5 +225,7 @@ const ASIDE_FOR: f32 = 0.4;
 const STRAYS_FOR: f32 = 0.1;
 /// At 3 m/s and 3.5 m/s² a robot stops in 0.43 s times its speed, s.
 const STOPS_IN: f32 = 0.5;
+/// Others within this distance count first for a robot that leaves a region, m: half a second's way.
+const LEAVES_PAST: f32 = 1.5;
 /// Goal walls matter within this distance of the goal line, m.
 const NEAR_GOAL: f32 = 0.7;

@@ -13,7 +13,7 @@ use rules::{Phase, Side};
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, limits_without_ball};
-use crate::skills::wheels::get_ball::LOOKS_AHEAD;
+use crate::skills::wheels::get_ball::{INTERCEPTION_EFFORT_MAX, LOOKS_AHEAD};
 
 /// Blocks a ball on `stretch`.
 pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
@@ -24,8 +24,8 @@ pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
     };
     let face = me.direction_to(ball.position);
     if let Some(crossing) = coming(&ball, stretch) {
-        let place = stop(belief, &ball, crossing);
-        return Drive { dribbler: 1.0, ..Drive::bold(place, face) }.into();
+        let (place, effort) = stop(belief, &ball, crossing);
+        return Drive { dribbler: 1.0, effort, ..Drive::bold(place, face) }.into();
     }
     Drive::avoiding(threatened(belief, &ball, stretch), face).into()
 }
@@ -39,8 +39,8 @@ fn coming(ball: &BelievedBall, stretch: Segment<Field>) -> Option<Point<Field>> 
     crossing(ball_path, stretch, BLOCKED_BESIDE_M)
 }
 
-/// The point with the most slack on the ball's path to `crossing`.
-fn stop(belief: &Belief, ball: &BelievedBall, crossing: Point<Field>) -> Point<Field> {
+/// The point with the most slack on the ball's path to `crossing`, and the instructions of its search.
+fn stop(belief: &Belief, ball: &BelievedBall, crossing: Point<Field>) -> (Point<Field>, u32) {
     let path = BallModel::default().rolling(ball.position, ball.velocity);
     let until = path.time_to(ball.position.distance(crossing)).unwrap_or(f32::INFINITY).min(LOOKS_AHEAD);
     let question = Interception {
@@ -51,14 +51,17 @@ fn stop(belief: &Belief, ball: &BelievedBall, crossing: Point<Field>) -> Point<F
         reach: BALL_AT,
         until,
     };
-    match question.find(&limits_without_ball(belief), InterceptRequest::Safest) {
+    let limits = limits_without_ball(belief);
+    let (verdict, effort) = question.find_within(&limits, InterceptRequest::Safest, INTERCEPTION_EFFORT_MAX);
+    let place = match verdict {
         InterceptVerdict::Intercepts(interception_point) if interception_point.slack() > 0.0 => {
             interception_point.place
         }
         // Too late to stop there: go where it crosses, as fast as possible; a body on the ball's path is
         // enough.
         _ => crossing,
-    }
+    };
+    (place, effort)
 }
 
 /// Point at which a ball that does not approach would cross the stretch.

@@ -4,13 +4,14 @@
 //! In a restart the kicker may touch the ball once: it goes in only when everything points right, kicker
 //! armed and dribbler still, so that the first touch is the kick.
 
-use geometry::{Field, Point, Vector};
+use geometry::{Angle, Field, Point, Vector, math};
 use motion::ball::BallModel;
+use protocol::host::RuleRole;
 use protocol::robot_io::OmniKick;
 use rules::Phase;
 use rules::limits::ROBOT_RADIUS;
 
-use crate::belief::Belief;
+use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, SHOT};
 use crate::governor::may_kick;
@@ -32,6 +33,11 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     }
     let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
     let face = ball.position.direction_to(at);
+    // Contact first, the turn after, where an opponent comes for a ball that this robot would go round.
+    if !once && ready && takes_first(belief, &ball, face) {
+        let aimed = (face - belief.pose.heading).abs() < AIM_CLEARS;
+        return Drive { kick: if aimed { kick } else { OmniKick::None }, ..take(belief, &ball) }.into();
+    }
     // Where an opponent stands behind the ball there is no room to line up: the ball is taken first, and
     // turned.
     let behind = ball.position - Vector::polar(LINES_UP, face);
@@ -59,6 +65,37 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
         }
         Approach::Around(drive) => drive.into(),
     }
+}
+
+/// Whether a ball nearby shall be touched at once: an opponent has it or could be there before this robot is behind
+/// it, or the robot is the keeper.
+fn takes_first(belief: &Belief, ball: &BelievedBall, face: Angle) -> bool {
+    let me = belief.pose.position;
+    let round = (me.direction_to(ball.position) - face).abs();
+    let opponent = belief.nearest_opponent(ball.position).map_or(f32::INFINITY, |(_, distance)| distance);
+    let wanted = opponent < HAS_BALL
+        || belief.game.rule_role == RuleRole::Keeper
+        || opponent < PRESSED && round > GOES_ROUND;
+    // Not at the own goal line, nor towards it where that is near: a ball that is pushed there is in, or out.
+    let field = belief.league().field();
+    let line = field.goal_center(belief.game.defending).x();
+    let pushes_back = (ball.position.x() - me.x()) * line > 0.0;
+    let off_line = if pushes_back { PUSHED_BACK_OFF_LINE } else { OFF_LINE };
+    let at_line = (line - ball.position.x()).abs() < off_line;
+    let within = if opponent < HAS_BALL { TACKLED_WITHIN } else { TAKEN_WITHIN };
+    wanted && me.distance(ball.position) < within && !at_line
+}
+
+/// Straight to the ball, and slow at it while the roller does not face it.
+fn take(belief: &Belief, ball: &BelievedBall) -> Drive {
+    let me = belief.pose.position;
+    let lead = TAKE_LEAD + LEADS_FARTHER * me.distance(ball.position);
+    let to_ball = ball.position + ball.velocity * lead - me;
+    let face = to_ball.angle();
+    let gap = to_ball.norm() - BALL_AT;
+    let to = me + to_ball.unit().unwrap_or_default() * (gap + GOES_THROUGH);
+    let speed = TAKES + ball.velocity.norm() + math::sqrt(2.0 * TAKE_BRAKE * gap.max(0.0));
+    Drive { speed, dribbler: 1.0, ..Drive::bold(to, face) }
 }
 
 /// With the ball held: turns with it until the kick goes to `at`, then kicks.
@@ -103,6 +140,30 @@ const REST_SPEED_MAX: f32 = 0.25;
 /// by side.
 const LINES_UP: f32 = 0.165;
 const BODIES: f32 = 2.0 * ROBOT_RADIUS;
+/// An opponent this near the ball comes for it, m: it is there in the time of half a circle around the ball.
+const PRESSED: f32 = 1.3;
+/// One this near has it, m.
+const HAS_BALL: f32 = 0.2;
+/// A ball that is taken at once is kicked within this of its direction, rad: it is cleared.
+const AIM_CLEARS: f32 = 0.2;
+/// A robot this much beside its kick goes round or turns, rad.
+const GOES_ROUND: f32 = 0.5;
+/// So near to the ball it takes it first, m.
+const TAKEN_WITHIN: f32 = 0.4;
+/// The same at an opponent, m.
+const TACKLED_WITHIN: f32 = 0.8;
+/// Nearer to the own goal line than this, m, a ball is not taken at once; and not towards it.
+const OFF_LINE: f32 = 0.15;
+const PUSHED_BACK_OFF_LINE: f32 = 0.5;
+/// Speed at the first touch, m/s; how hard it brakes to that, m/s²; how far beyond the touch it aims, m, so that it
+/// does not brake to stand there.
+const TAKES: f32 = 0.5;
+const TAKE_BRAKE: f32 = 3.5;
+const GOES_THROUGH: f32 = 0.15;
+/// Time by which its place is led, s: a ball that rolls goes on meanwhile.
+const TAKE_LEAD: f32 = 0.05;
+/// And by this for each metre to go, s/m.
+const LEADS_FARTHER: f32 = 0.4;
 /// How fast a robot goes in for a kick, m/s.
 const GO_IN: f32 = 0.35;
 /// Within this distance of the ball it must face the target before it continues, m.
