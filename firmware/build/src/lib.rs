@@ -59,8 +59,9 @@ pub fn boards() -> &'static [Board] {
     static BOARDS: OnceLock<Vec<Board>> = OnceLock::new();
     const MANIFESTS: &[(&str, &str)] = &include!(concat!(env!("OUT_DIR"), "/boards.rs"));
     BOARDS.get_or_init(|| {
-        let board = |(name, manifest): &(&str, &str)| Board::parse(name, manifest);
-        let known = MANIFESTS.iter().map(|known| board(known).expect("the build script has read it"));
+        let known = MANIFESTS
+            .iter()
+            .map(|(name, manifest)| Board::parse(name, manifest).expect("the build script has read it"));
         let mut boards: Vec<Board> = known.collect();
         boards.extend(added_boards(&workspace_root().join("firmware/boards"), MANIFESTS));
         boards.sort_by(|a, b| a.name.cmp(&b.name));

@@ -237,8 +237,9 @@ impl<'a> Simulation<'a> {
 
     /// The newest decision of each attacker whose computer can be looked into.
     pub fn decisions(&self) -> impl Iterator<Item = (RobotId, DecisionReport)> {
-        let decision = |robot: &Robot<'a>| Some((robot.config.robot, robot.computer.as_ref()?.decision()?));
-        self.robots.iter().filter_map(decision)
+        self.robots
+            .iter()
+            .filter_map(|robot| Some((robot.config.robot, robot.computer.as_ref()?.decision()?)))
     }
 
     /// The opponents' roles; they follow the attackers in [`LeggedWorld::walkers`].

@@ -21,8 +21,12 @@ struct Entry {
 
 impl BackupCount {
     pub(crate) fn new(robots: impl IntoIterator<Item = RobotId>) -> Self {
-        let entry = |robot| Entry { robot, role: Role::None, counted_at: None, count: 0 };
-        Self { robots: robots.into_iter().map(entry).collect() }
+        Self {
+            robots: robots
+                .into_iter()
+                .map(|robot| Entry { robot, role: Role::None, counted_at: None, count: 0 })
+                .collect(),
+        }
     }
 
     /// `robot` reported `role` at `time` seconds.

@@ -107,8 +107,10 @@ impl<'a> TrialConfig<'a> {
             pause_after_cycle: self.pause_after_cycle,
             ..BrainConfig::new(robot, TEAM)
         });
-        let drawn = || self.scenario.layout(self.opponents, &self.parameters, self.seed);
-        let layout = self.layout.clone().unwrap_or_else(drawn);
+        let layout = self
+            .layout
+            .clone()
+            .unwrap_or_else(|| self.scenario.layout(self.opponents, &self.parameters, self.seed));
         SimulationConfig {
             seed: self.seed,
             layout,

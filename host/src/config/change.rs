@@ -82,9 +82,11 @@ impl ParameterChange {
 
     fn write_robot(&self, parameter: &Parameter, list: &mut ArrayOfTables) -> Result<(), ConfigError> {
         let robot = i64::from(self.robot.unwrap_or_default());
-        let is_its = |table: &Table| table.get("robot").and_then(Item::as_integer) == Some(robot);
         // The last of a robot's entries holds.
-        let found = list.iter_mut().filter(|table| is_its(table)).last();
+        let found = list
+            .iter_mut()
+            .filter(|table| table.get("robot").and_then(Item::as_integer) == Some(robot))
+            .last();
         if let Some(table) = found {
             return self.write_value(parameter, table);
         }

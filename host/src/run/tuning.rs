@@ -34,8 +34,7 @@ impl Tuning {
 
     /// Keeps a change that the host has taken.
     pub(super) fn keep(&mut self, change: ParameterChange) {
-        let is_same = |had: &ParameterChange| (&had.key, had.robot) == (&change.key, change.robot);
-        self.changes.retain(|had| !is_same(had));
+        self.changes.retain(|had| (&had.key, had.robot) != (&change.key, change.robot));
         self.changes.push(change);
     }
 

@@ -91,8 +91,9 @@ impl Outbox {
 
     fn put_aside(&mut self, (to, packet): (To, Packet)) {
         let sender = claimed_sender(&packet);
-        let same = |(known, old): &(To, Packet)| *known == to && claimed_sender(old) == sender;
-        if let Some(old) = self.side.iter_mut().find(|old| same(old)) {
+        if let Some(old) =
+            self.side.iter_mut().find(|(known, old)| *known == to && claimed_sender(old) == sender)
+        {
             // It keeps its place in the queue.
             old.1 = packet;
             self.counts.side_dropped += 1;

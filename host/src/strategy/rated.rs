@@ -11,10 +11,9 @@ use geometry::{Attack, Point, Segment};
 use protocol::RobotId;
 use protocol::host::KickOrder;
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
-use rules::{Phase, Side};
 
 use super::case_candidate::{CaseStep, CastCase};
-use super::clear::{self, Clearance, Release, clearance};
+use super::clear::{self, Clearance, Release, clearance, given_away};
 use super::pass::bridge::{RADIUS, refine};
 use super::pass::shot::shot;
 use super::pass::{Kicks, Offer, PassScene, PassSearch, Rating};
@@ -28,8 +27,6 @@ const LOST_SHARE_PRESSED: f32 = 0.2;
 const LOST_SHARE_FREE: f32 = 0.0;
 /// In our own half from this share of the way to our goal on the ball may be cleared.
 const CLEARS_FROM: f32 = 0.4;
-/// P(goal against) added by a free kick in our half that is given away.
-const GIVEN_AWAY: f32 = 0.15;
 /// An action of the robot with the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
@@ -269,12 +266,6 @@ fn pass_worth(view: &View, from: Point<Attack>, rating: &Rating) -> f32 {
     let (receive, goal) = (rating.receive(), view.stakes.ours * rating.goal());
     let had = goal.max(view.stakes.of_ours(half, rating.at));
     receive * had + (1.0 - receive) * (view.stakes.of_theirs(half, lost) - given_away(view, from))
-}
-
-/// What a free kick in our half costs beyond the ball where it is given away: our team is spread out for it. Of 17
-/// that were lost to the champions' team 8 became goals within 8 s.
-pub(super) fn given_away(view: &View, from: Point<Attack>) -> f32 {
-    if view.phase == Phase::FreeKick(Side::Ours) && from.x() < 0.0 { GIVEN_AWAY } else { 0.0 }
 }
 
 fn play_on(view: &View, from: Point<Attack>) -> f32 {

@@ -18,8 +18,10 @@ impl CaseText {
     /// Reads a text; an error where it is not TOML.
     pub fn read(text: &str) -> Result<Self, EditError> {
         let document = text.parse();
-        let syntax = |error: toml_edit::TomlError| EditError::Syntax(error.message().to_owned());
-        Ok(Self { document: document.map_err(syntax)? })
+        Ok(Self {
+            document: document
+                .map_err(|error: toml_edit::TomlError| EditError::Syntax(error.message().to_owned()))?,
+        })
     }
 
     /// The text as it is now.

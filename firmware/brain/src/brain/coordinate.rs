@@ -3,9 +3,7 @@
 
 use casebase::{CaseRobot, Problem};
 use protocol::decision::Grounds;
-use protocol::team::{
-    AbortReason, Beacon, Closure, CycleState, Decision, PRESENCE_LEASE, Play, Progress, Status,
-};
+use protocol::team::{AbortReason, Closure, CycleState, Decision, PRESENCE_LEASE, Play, Progress, Status};
 use protocol::{Duration, Instant, RobotId};
 
 use super::{Brain, EFFORT_OF_GAMEPLAY, INPUTS_OF_PLAN_MAX, explained::Explained};
@@ -207,8 +205,10 @@ impl Brain<'_> {
         if self.belief.holds_ball {
             return Some(self.config.robot);
         }
-        let holds = |beacon: &Beacon| beacon.status.has(Status::HOLDS_BALL);
-        self.teammates.present(now).find(|(_, teammate)| holds(&teammate.beacon)).map(|(id, _)| id)
+        self.teammates
+            .present(now)
+            .find(|(_, teammate)| teammate.beacon.status.has(Status::HOLDS_BALL))
+            .map(|(id, _)| id)
     }
 
     /// On wheels: the ball rolls and a robot will intercept it before it stops, so that no case can be

@@ -233,8 +233,9 @@ impl<F: Copy> Scene<'_, F> {
             let x = cell.x() * ((column as f32 + 0.5) / COLUMNS as f32);
             let y = cell.y() * ((row as f32 + 0.5) / ROWS as f32);
             let at = low + Vector::new(x, y);
-            let is_nearer = |best: Point<F>| at.distance(search.start) < best.distance(search.start);
-            if search.unseen.is_none_or(is_nearer) && self.cover(at).is_none() {
+            if search.unseen.is_none_or(|best| at.distance(search.start) < best.distance(search.start))
+                && self.cover(at).is_none()
+            {
                 search.unseen = Some(at);
             }
             search.tested += 1;

@@ -128,8 +128,7 @@ impl<F: Copy> Search<'_, F> {
     /// The route along these corners, without the first one where it is passed; `None` where it is blocked,
     /// as far as the effort tells.
     fn known(&mut self, start: Node<F>, corners: &mut Corners<F>) -> Option<Route<F>> {
-        let behind = |corners: &Corners<F>| corners.iter().rev().nth(1).copied();
-        let second = behind(corners).unwrap_or(self.goal);
+        let second = corners.iter().rev().nth(1).copied().unwrap_or(self.goal);
         if !corners.is_empty() && self.first_hit(&start, second).is_none() {
             corners.pop();
         }
@@ -141,7 +140,7 @@ impl<F: Copy> Search<'_, F> {
             }
             node = Node { at: end, length: node.length + node.at.distance(end), ..node };
         }
-        let behind = behind(corners).unwrap_or(self.goal);
+        let behind = corners.iter().rev().nth(1).copied().unwrap_or(self.goal);
         Some(Route { arrives: true, via: Some(via), behind, end: self.goal, length: node.length })
     }
 

@@ -135,8 +135,10 @@ impl InternalReferee {
     /// Robots of teams that do not drive which are obstacles to the next restart.
     fn blamed(&self, robots: &[RobotSeen]) -> Vec<Who> {
         let all = self.obstacles_to_come(robots);
-        let stand = |who: &Who| !self.settings.team(who.colour).drives;
-        all.iter().filter_map(ReadyObstacle::who).filter(stand).collect()
+        all.iter()
+            .filter_map(ReadyObstacle::who)
+            .filter(|who| !self.settings.team(who.colour).drives)
+            .collect()
     }
 
     /// Obstacles in the coming stop and in the preparation after it.

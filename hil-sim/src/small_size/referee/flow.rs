@@ -136,8 +136,10 @@ impl InternalReferee {
         let favoured =
             favoured.unwrap_or_else(|| if self.chance.chance(0.5) { Colour::Yellow } else { Colour::Blue });
         self.drawn = Some(favoured);
-        let may = |team: &Colour| self.accounts.of(*team).places();
-        [favoured, favoured.other()].into_iter().find(may).map_or(Placer::Person, Placer::Team)
+        [favoured, favoured.other()]
+            .into_iter()
+            .find(|team| self.accounts.of(*team).places())
+            .map_or(Placer::Person, Placer::Team)
     }
 
     fn is_reachable(&self, ball: Point<Field>) -> bool {

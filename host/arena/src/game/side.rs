@@ -68,8 +68,7 @@ impl<'a> Team<'a> {
 
     /// The newest decision of each robot whose computer can be looked into.
     pub(super) fn decisions(&self) -> impl Iterator<Item = (RobotId, DecisionReport)> {
-        let decision = |player: &Player<'_>| Some((player.who.id, player.computer.as_ref()?.decision()?));
-        self.players.iter().filter_map(decision)
+        self.players.iter().filter_map(|player| Some((player.who.id, player.computer.as_ref()?.decision()?)))
     }
 
     pub(super) fn worst_instructions(&self) -> u32 {

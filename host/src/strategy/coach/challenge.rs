@@ -1,5 +1,5 @@
-//! `challenge`: an opponent that has the ball, or clearly will have it first, is challenged: one robot stands in the
-//! way of its shot or takes the ball, a second one comes from the other side. Attack frame, SI units.
+//! `challenge`: an opponent that has the ball, or clearly will have it first, is challenged: one robot stands
+//! in the way of its shot or takes the ball, a second one comes from the other side. Attack frame, SI units.
 
 use geometry::{Attack, Point, Vector};
 use motion::trajectory::CalcMotion;
@@ -18,11 +18,11 @@ const WALL_LEAVES_FOR_S: f32 = 0.4;
 const CARRIED_FOR_S: f32 = 0.3;
 /// An opponent this near the ball carries it, m.
 const CARRIES_WITHIN_M: f32 = 0.2;
-/// Distance from the ball to the centre of the robot that stands in its way, m: robots keep 0.35 m off the centre of one
-/// that moves (`brain`'s surroundings).
+/// Distance from the ball to the centre of the robot that stands in its way, m: robots keep 0.35 m off the
+/// centre of one that moves (`brain`'s surroundings).
 const BLOCKS_AT_M: f32 = 0.28;
-/// This near the ball, m, a challenger takes it; with the carrier's body not before it: beside its way, by the cosine,
-/// or farther off than the ball by this, m.
+/// This near the ball, m, a challenger takes it; with the carrier's body not before it: beside its way, by
+/// the cosine, or farther off than the ball by this, m.
 const TACKLES_WITHIN_M: f32 = 0.7;
 const OPEN_COS: f32 = 0.9;
 const OPEN_BY_M: f32 = 0.03;
@@ -52,8 +52,8 @@ impl Coach {
             arrival(robot, (ball, view), self.passes.kicks().ground(), limits, view.our_goal())
         };
         // Who took their restart may not touch it again.
-        let may = |robot: &&ViewRobot| self.pass.their_kicker != Some(robot.id);
-        let theirs = roles::choose(view.theirs.iter().filter(may), None, 0.0, |robot| of(robot).seconds);
+        let may_touch = view.theirs.iter().filter(|robot| self.pass.their_kicker != Some(robot.id));
+        let theirs = roles::choose(may_touch, None, 0.0, |robot| of(robot).seconds);
         let worth = if self.open_play.attacked { -roles::WORTH } else { roles::WORTH };
         let sooner = theirs.filter(|(_, seconds)| {
             self.open_play.rated.possession.owner().is_none() && seconds + worth < ours
@@ -63,8 +63,8 @@ impl Coach {
         Some((robot.id, of(robot).ball))
     }
 
-    /// One robot takes the ball off `opponent`, or stands before it on its way to our goal; where it shields the ball
-    /// a second one comes from the other side. The others defend.
+    /// One robot takes the ball off `opponent`, or stands before it on its way to our goal; where it shields
+    /// the ball a second one comes from the other side. The others defend.
     pub(super) fn challenge(
         &mut self,
         plan: &mut Plan<'_>,
@@ -116,10 +116,10 @@ impl Coach {
     ) -> Option<&'v ViewRobot> {
         let view = plan.view;
         let limits = self.passes.kicks().constants().receiver;
-        let may = |robot: &&ViewRobot| plan.free.contains(&robot.id) && robot.id != view.keeper;
-        let cost =
-            |robot: &ViewRobot| limits.time(robot.position, robot.velocity, at) + self.wall_stays(robot.id);
-        let (id, _) = roles::choose(view.ours.iter().filter(may), held, roles::WORTH, cost)?;
+        let free = view.ours.iter().filter(|robot| plan.free.contains(&robot.id) && robot.id != view.keeper);
+        let (id, _) = roles::choose(free, held, roles::WORTH, |robot| {
+            limits.time(robot.position, robot.velocity, at) + self.wall_stays(robot.id)
+        })?;
         view.our(id)
     }
 
@@ -128,8 +128,8 @@ impl Coach {
         if self.roles.defenders.contains(&Some(id)) { WALL_LEAVES_FOR_S } else { 0.0 }
     }
 
-    /// Orders a challenger to its place, or, near the ball, to take that and clear it; `blocked`: another one stands
-    /// in the way of the carrier's shot.
+    /// Orders a challenger to its place, or, near the ball, to take that and clear it; `blocked`: another one
+    /// stands in the way of the carrier's shot.
     fn order_challenge(
         &self,
         plan: &mut Plan<'_>,

@@ -148,8 +148,8 @@ impl DefenceState {
         (Task::GoTo { at, face: at.direction_to(ball.position) }, why)
     }
 
-    /// Whether the keeper plays the ball: a slow one in its area or at its goal line, or before the area where it is
-    /// first.
+    /// Whether the keeper plays the ball: a slow one in its area or at its goal line, or before the area
+    /// where it is first.
     fn keeper_plays(&self, view: &View, keeper: &ViewRobot, ball: &ViewBall) -> bool {
         let speed = ball.velocity.norm();
         let near = keeper.position.distance(ball.position) < REBOUND_WITHIN_M;
@@ -163,8 +163,8 @@ impl DefenceState {
             && (before || view.in_our_area(ball.position, 0.0))
     }
 
-    /// The keeper's clearance, by the same list as everyone's, looked at again until the ball leaves. Where no body
-    /// fits behind the ball it is taken from a side on which one does, and turned.
+    /// The keeper's clearance, by the same list as everyone's, looked at again until the ball leaves. Where
+    /// no body fits behind the ball it is taken from a side on which one does, and turned.
     fn keeper_clears(
         &mut self,
         view: &View,

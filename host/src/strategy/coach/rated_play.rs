@@ -28,7 +28,8 @@ const RATED_EVERY: Duration = Duration::millis(50);
 const BALL_MOVED_M: f32 = 0.3;
 /// Another action is better by at least this: a robot that turns round loses half a second.
 const BETTER_BY_MIN: f32 = 0.02;
-/// A pass of a restart with a smaller P(receive) waits for a better one, for as long of the 5 s (A) that the rules give.
+/// A pass of a restart with a smaller P(receive) waits for a better one, for as long of the 5 s (A) that the
+/// rules give.
 const POOR_PASS_P: f32 = 0.4;
 const WAITS_FOR_BETTER: Duration = Duration::millis(3000);
 /// At a restart by this, more with every second of it, and by this share of it where what was chosen is poor.
@@ -36,8 +37,8 @@ const RESTART_BETTER_BY: f32 = 0.05;
 const POOR_SHARE: f32 = 0.4;
 /// And by this share of what it is worth: places of equal worth do not alternate.
 const BETTER_BY_SHARE: f32 = 0.25;
-/// This soon before it touches the ball, s, a robot keeps its action until that is worth this much less than when it
-/// was chosen, and half of it.
+/// This soon before it touches the ball, s, a robot keeps its action until that is worth this much less than
+/// when it was chosen, and half of it.
 const LOCKED_WITHIN_S: f32 = 0.35;
 const FALLS_BY_MIN: f32 = 0.06;
 /// An action must be better than a running case by at least this, P(goal): its partners have gone to their
@@ -169,8 +170,8 @@ impl Coach {
         self.order_action(plan, &action)
     }
 
-    /// The kicker's task at our kick-off or free kick, by the same list; `None` where it has neither pass nor shot.
-    /// What is not likely to reach a mate waits while the seconds run, and mates move on.
+    /// The kicker's task at our kick-off or free kick, by the same list; `None` where it has neither pass nor
+    /// shot. What is not likely to reach a mate waits while the seconds run, and mates move on.
     pub(super) fn rated_restart(
         &mut self,
         plan: &mut Plan<'_>,
@@ -251,15 +252,15 @@ impl Coach {
             _ => BETTER_BY_MIN.max(BETTER_BY_SHARE * best.1.abs()),
         };
         // At the ball it is only given up for a reason of its own.
-        let fell = |again: &Rated| {
-            kept.is_none_or(|chosen| again.worth < chosen.worth - FALLS_BY_MIN.max(0.5 * chosen.worth.abs()))
-        };
+        let falls_to =
+            kept.map_or(f32::INFINITY, |chosen| chosen.worth - FALLS_BY_MIN.max(0.5 * chosen.worth.abs()));
         let locked = view.our(who).is_some_and(|robot| {
             let mover = Mover::new(robot.position, robot.velocity, &self.passes.kicks().constants().receiver);
             mover.time_to_touch(from, contact::TOUCHES_WITHIN) < LOCKED_WITHIN_S
         });
-        let is_kept = |again: &Rated| best.1 < again.worth + better || locked && !fell(again);
-        let (action, from, worth) = match again.filter(is_kept) {
+        let kept_action =
+            again.filter(|again| best.1 < again.worth + better || locked && again.worth >= falls_to);
+        let (action, from, worth) = match kept_action {
             Some(again) => {
                 let worth = kept.map_or(again.worth, |chosen| chosen.worth.max(again.worth));
                 (again.action, there.unwrap_or(from), worth)

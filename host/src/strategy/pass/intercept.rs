@@ -20,8 +20,8 @@ pub const SAFE: f32 = 0.6;
 const REACTION_FADES_M: f32 = 0.1;
 /// 2 √(0.1 m / 3.5 m/s²), s.
 const REACTION_TIME_S: f32 = 0.338;
-/// At a restart no opponent touches a ball nearer to its place than this, m, without a start: the rules' 0.5 m and its
-/// body, less what it reaches.
+/// At a restart no opponent touches a ball nearer to its place than this, m, without a start: the rules' 0.5
+/// m and its body, less what it reaches.
 const KEPT_OFF_M: f32 = 0.48;
 /// Places nearer to each other than this count as equal, m.
 const SAME_PLACE_WITHIN_M: f32 = 0.02;

@@ -24,19 +24,20 @@ const SAME_PLACE_WITHIN_M: f32 = 1e-3;
 const KEEPER_MATTERS_BEYOND_M: f32 = 2.8;
 /// Nine factors in another order differ by less than 10⁻⁶.
 const ROUNDING_FACTOR: f32 = 1.0 + 1e-5;
-/// Time that an opponent beside the ball uses before our free kick leaves, s: it steps towards where the kicker
-/// turns, and it lines up for 1.0 to 1.5 s.
+/// Time that an opponent beside the ball uses before our free kick leaves, s: it steps towards where the
+/// kicker turns, and it lines up for 1.0 to 1.5 s.
 const STEPS_IN_S: f32 = 1.0;
 /// Opponents this near the ball do, m: as near as the rules permit, and a step.
 const STEPS_IN_WITHIN_M: f32 = 1.2;
-/// Share of the chips of our free kicks that arrive, against the usual chip's: the ball lies where it is kicked
-/// from, and the receiver stands where it comes. A guess that the drill `marker` supports; not measured by itself.
+/// Share of the chips of our free kicks that arrive, against the usual chip's: the ball lies where it is
+/// kicked from, and the receiver stands where it comes. A guess that the drill `marker` supports; not
+/// measured by itself.
 const RESTART_CHIP_PRIOR: f32 = 0.9;
-/// What having the ball is worth more than a ball lost, out of our half: there places are compared by whether they
-/// keep it.
+/// What having the ball is worth more than a ball lost, out of our half: there places are compared by whether
+/// they keep it.
 const HELD_IN_OUR_HALF: f32 = 0.1;
-/// At our free kicks the receiver stands there when the ball leaves, and goes towards it: a marker beside or behind it
-/// does not get this last part of the ball's way, m.
+/// At our free kicks the receiver stands there when the ball leaves, and goes towards it: a marker beside or
+/// behind it does not get this last part of the ball's way, m.
 const RECEIVER_COVERS_M: f32 = 0.8;
 /// A chip that ends in a goal less often than this is not considered: one in two hundred.
 const CHIP_GOAL_P_MIN: f32 = 0.005;

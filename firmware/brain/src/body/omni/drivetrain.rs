@@ -148,17 +148,14 @@ impl Drivetrain {
         let mut around = Surroundings::none(&field);
         around.look(belief, &field, drive.to, drive.mode);
         let effort = self.effort(belief, drive);
-        let search = |obstacles: usize| avoid::effort_least(obstacles) + EFFORT_OF_SEARCH;
         // Too little for all that is around: the path of a few steps before has looked at all of it.
-        if effort < search(around.obstacles.len())
-            && path_age < PATH_AGE_MAX
-            && let Some(path) = under_way.filter(|path| path.towards.is_some())
-        {
+        if effort < search_effort(around.obstacles.len()) && path_age < PATH_AGE_MAX {
             self.path_age = path_age;
+            let path = under_way.unwrap_or(CurrentPath { drive: *drive, towards: None });
             return self.keep_path(belief, step, CurrentPath { drive: *drive, ..path });
         }
         // Where the effort is too small for all robots the drive only slows down for those far away.
-        while effort < search(around.obstacles.len()) && around.leave_out_farthest(from) {}
+        while effort < search_effort(around.obstacles.len()) && around.leave_out_farthest(from) {}
         if effort < avoid::effort_least(around.obstacles.len()) {
             return self.stand(belief, step, Some(drive.face));
         }
@@ -261,6 +258,11 @@ fn short_of_bodies(belief: &Belief, mut velocity: Vector<Field>) -> Vector<Field
         }
     }
     velocity
+}
+
+/// Instructions with which a path among this many obstacles is searched.
+fn search_effort(obstacles: usize) -> u32 {
+    avoid::effort_least(obstacles) + EFFORT_OF_SEARCH
 }
 
 /// Angle by which the body has turned in the middle of a step of `step` seconds.

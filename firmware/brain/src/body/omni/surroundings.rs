@@ -110,12 +110,9 @@ impl Surroundings {
 
     /// Leaves out the robot that is farthest from `me`; `false` where none is left.
     pub fn leave_out_farthest(&mut self, me: Point<Field>) -> bool {
-        let away = |obstacle: &Obstacle<Field>| match obstacle.shape {
-            Shape::Disc { center, .. } => center.distance(me),
-            Shape::Box { .. } | Shape::Capsule { .. } => 0.0,
-        };
-        let robots = self.obstacles.iter().enumerate().skip(self.fixed);
-        let farthest = robots.max_by(|(_, a), (_, b)| away(a).total_cmp(&away(b))).map(|(i, _)| i);
+        let robots =
+            self.obstacles.iter().map(|robot| robot.shape.distance_to(me)).enumerate().skip(self.fixed);
+        let farthest = robots.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(i, _)| i);
         farthest.map(|i| self.obstacles.swap_remove(i)).is_some()
     }
 

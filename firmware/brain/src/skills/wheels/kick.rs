@@ -13,7 +13,7 @@ use rules::limits::ROBOT_RADIUS;
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
-use crate::body::omni::{BALL_AT, Drive, SHOT};
+use crate::body::omni::{BALL_AT, Drive, SHOT, limits_without_ball};
 use crate::governor::may_kick;
 use crate::skills::Step;
 use crate::skills::wheels::get_ball::{Approach, approach, get_ball};
@@ -67,8 +67,8 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     }
 }
 
-/// Whether a ball nearby shall be touched at once: an opponent has it or could be there before this robot is behind
-/// it, or the robot is the keeper.
+/// Whether a ball nearby shall be touched at once: an opponent has it or could be there before this robot is
+/// behind it, or the robot is the keeper.
 fn takes_first(belief: &Belief, ball: &BelievedBall, face: Angle) -> bool {
     let me = belief.pose.position;
     let round = (me.direction_to(ball.position) - face).abs();
@@ -94,7 +94,8 @@ fn take(belief: &Belief, ball: &BelievedBall) -> Drive {
     let face = to_ball.angle();
     let gap = to_ball.norm() - BALL_AT;
     let to = me + to_ball.unit().unwrap_or_default() * (gap + GOES_THROUGH);
-    let speed = TAKES + ball.velocity.norm() + math::sqrt(2.0 * TAKE_BRAKE * gap.max(0.0));
+    let speed =
+        TAKES + ball.velocity.norm() + math::sqrt(2.0 * limits_without_ball(belief).braking * gap.max(0.0));
     Drive { speed, dribbler: 1.0, ..Drive::bold(to, face) }
 }
 
@@ -155,10 +156,9 @@ const TACKLED_WITHIN: f32 = 0.8;
 /// Nearer to the own goal line than this, m, a ball is not taken at once; and not towards it.
 const OFF_LINE: f32 = 0.15;
 const PUSHED_BACK_OFF_LINE: f32 = 0.5;
-/// Speed at the first touch, m/s; how hard it brakes to that, m/s²; how far beyond the touch it aims, m, so that it
-/// does not brake to stand there.
+/// Speed at the first touch, m/s; how far beyond the touch it aims, m, so that it does not brake to stand
+/// there.
 const TAKES: f32 = 0.5;
-const TAKE_BRAKE: f32 = 3.5;
 const GOES_THROUGH: f32 = 0.15;
 /// Time by which its place is led, s: a ball that rolls goes on meanwhile.
 const TAKE_LEAD: f32 = 0.05;
