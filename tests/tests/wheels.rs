@@ -68,7 +68,7 @@ fn a_step_with_many_messages_reuses_the_path_and_the_next_replans() {
         });
         on != back
     };
-    assert!(turns(&[0]) && !turns(&[5]) && turns(&[5, 0]));
+    assert!(turns(&[0]) && !turns(&[9]) && turns(&[9, 0]));
 }
 
 #[test]

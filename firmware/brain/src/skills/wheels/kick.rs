@@ -8,8 +8,8 @@ use geometry::{Angle, Field, Point, Vector, math};
 use motion::ball::BallModel;
 use protocol::host::RuleRole;
 use protocol::robot_io::OmniKick;
-use rules::Phase;
 use rules::limits::ROBOT_RADIUS;
+use rules::{Phase, Side};
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
@@ -75,7 +75,7 @@ fn takes_first(belief: &Belief, ball: &BelievedBall, face: Angle) -> bool {
     let opponent = belief.nearest_opponent(ball.position).map_or(f32::INFINITY, |(_, distance)| distance);
     let wanted = opponent < HAS_BALL
         || belief.game.rule_role == RuleRole::Keeper
-        || opponent < PRESSED && round > GOES_ROUND;
+        || round > GOES_ROUND && is_pressed(belief, ball);
     // Not at the own goal line, nor towards it where that is near: a ball that is pushed there is in, or out.
     let field = belief.league().field();
     let line = field.goal_center(belief.game.defending).x();
@@ -84,6 +84,15 @@ fn takes_first(belief: &Belief, ball: &BelievedBall, face: Angle) -> bool {
     let at_line = (line - ball.position.x()).abs() < off_line;
     let within = if opponent < HAS_BALL { TACKLED_WITHIN } else { TAKEN_WITHIN };
     wanted && me.distance(ball.position) < within && !at_line
+}
+
+/// Whether an opponent is close to the ball, or comes for it.
+fn is_pressed(belief: &Belief, ball: &BelievedBall) -> bool {
+    belief.others.iter().filter(|other| other.side == Side::Theirs).any(|other| {
+        let off = ball.position - other.pose.position;
+        let distance = off.norm();
+        distance < CLOSE_WITHIN_M || distance < PRESSED && other.velocity.dot(off) > COMES_AT * distance
+    })
 }
 
 /// Straight to the ball, and slow at it while the roller does not face it.
@@ -141,8 +150,11 @@ const REST_SPEED_MAX: f32 = 0.25;
 /// by side.
 const LINES_UP: f32 = 0.165;
 const BODIES: f32 = 2.0 * ROBOT_RADIUS;
-/// An opponent this near the ball comes for it, m: it is there in the time of half a circle around the ball.
+/// An opponent this near that moves towards the ball comes for it, m: it is there in the time of half a circle around the ball.
 const PRESSED: f32 = 1.3;
+/// Speed towards the ball from which on it comes, m/s; nearer than this, m, it need not move.
+const COMES_AT: f32 = 0.3;
+const CLOSE_WITHIN_M: f32 = 0.6;
 /// One this near has it, m.
 const HAS_BALL: f32 = 0.2;
 /// A ball that is taken at once is kicked within this of its direction, rad: it is cleared.
