@@ -130,7 +130,7 @@ impl<'a> Brain<'a> {
             return true;
         }
         let Since { effort, host_effort, gameplay_changed, .. } = self.since;
-        let must_plan = self.reuses_left == 0;
+        let must_plan = self.reuses_left == 0 || self.actuation.path_age() % PLANS_EVERY == PLANS_EVERY - 1;
         let takes = match kind {
             PacketKind::Command => effort < INPUTS_MAX,
             PacketKind::Snapshot => !must_plan && effort < INPUTS_MAX,
@@ -341,5 +341,8 @@ const INPUTS_MAX: u32 = 18_000;
 /// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual
 /// beacons between them, twice. Each step that plans adds one again.
 const PATH_REUSES_MAX: u8 = 10;
+/// Where a path is not found in this number of steps, the last of them leaves snapshots unopened, so that it
+/// has the time.
+const PLANS_EVERY: u8 = 3;
 /// Steps between two that plan on a radio channel that is always full, as in division A.
 const PATH_REUSES: u8 = 3;

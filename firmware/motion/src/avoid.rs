@@ -153,6 +153,13 @@ impl<F> Default for Carried<F> {
     }
 }
 
+impl<F> Carried<F> {
+    /// Whether the search for a route did not end within the effort and goes on in the next step.
+    pub fn is_searching(&self) -> bool {
+        self.route.is_unfinished()
+    }
+}
+
 /// Instructions with which a plan among this many obstacles tests the straight path at least.
 pub fn effort_least(obstacles: usize) -> u32 {
     cost::PLAN + 2 * cost::POINT + cost::PIECE + obstacles as u32 * cost::ITEM

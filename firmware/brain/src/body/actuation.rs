@@ -63,7 +63,22 @@ impl Actuation {
         matches!(self, Self::Wheels(..))
     }
 
-    /// Tells it how many instructions the inputs of this step took.
+    /// Number of steps since it planned a path.
+    pub fn path_age(&self) -> u8 {
+        match self {
+            Self::Legs(_) => 0,
+            Self::Wheels(_, wheels) => wheels.drivetrain.path_age(),
+        }
+    }
+
+    /// Accounts for more instructions of this step.
+    pub fn spend(&mut self, instructions: u32) {
+        if let Self::Wheels(_, wheels) = self {
+            wheels.drivetrain.spend(instructions);
+        }
+    }
+
+    /// Sets how many instructions the inputs of this step took.
     pub fn set_spent(&mut self, instructions: u32) {
         if let Self::Wheels(_, wheels) = self {
             wheels.drivetrain.set_spent(instructions);

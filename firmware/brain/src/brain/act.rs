@@ -14,6 +14,9 @@ use crate::skills::wheels;
 use crate::team::reuse::{self, ReuseRequest};
 use crate::timer::Timer;
 
+/// Instructions of a case that is carried out, beyond a skill's.
+const EFFORT_OF_PLAY: u32 = 2_500;
+
 impl Brain<'_> {
     /// The intent of this step.
     pub(super) fn act(&mut self, now: Instant) -> Intent {
@@ -59,6 +62,7 @@ impl Brain<'_> {
         if !self.awake {
             return Intent::Stand { face: None };
         }
+        self.actuation.spend(EFFORT_OF_PLAY);
         if self.config.approach == Approach::Reactive {
             return self.default_behaviour(now, Freedom::Full);
         }

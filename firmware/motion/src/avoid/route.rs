@@ -40,6 +40,8 @@ pub(super) struct CarriedRoute<F> {
     start: Point<F>,
     goal: Point<F>,
     nodes: heapless::Vec<Node<F>, NODES_MAX>,
+    /// The corner whose turns the effort did not suffice for, and those turns.
+    turns: Option<(usize, Turns<F>)>,
     /// Pieces that the unfinished search may still test; 0 where none is unfinished.
     checks: u32,
     /// Corners of the route that was found, the first one last.
@@ -54,9 +56,17 @@ impl<F> Default for CarriedRoute<F> {
             start: Point::default(),
             goal: Point::default(),
             nodes: heapless::Vec::new(),
+            turns: None,
             checks: 0,
             corners: heapless::Vec::new(),
         }
+    }
+}
+
+impl<F> CarriedRoute<F> {
+    /// Whether the effort ended the last search.
+    pub(super) fn is_unfinished(&self) -> bool {
+        self.checks > 0
     }
 }
 
@@ -66,6 +76,7 @@ struct Search<'s, F> {
     velocity: Vector<F>,
     limits: &'s FreeLimits,
     nodes: &'s mut heapless::Vec<Node<F>, NODES_MAX>,
+    turns: &'s mut Option<(usize, Turns<F>)>,
     /// Number of path pieces that may still be tested.
     checks: u32,
     /// Speed towards the goal, m/s.
@@ -84,12 +95,12 @@ impl<F: Copy> Route<F> {
         let start = Node { at: from, parent: 0, length: 0.0, cost: 0.0, estimate: length };
         let towards = (goal - from).unit().unwrap_or_default();
         let speed = math::clamp(velocity.dot(towards), 0.0, limits.speed);
-        let CarriedRoute { start: began, goal: aimed, nodes, checks, corners } = carried;
+        let CarriedRoute { start: began, goal: aimed, nodes, turns, checks, corners } = carried;
         if aimed.distance(goal) > SAME_PLACE_M {
             *checks = 0;
             corners.clear();
         }
-        let mut search = Search { scene, goal, velocity, limits, nodes, checks: CHECKS_MAX, speed };
+        let mut search = Search { scene, goal, velocity, limits, nodes, turns, checks: CHECKS_MAX, speed };
         if let Some(route) = search.known(start, corners) {
             return route;
         }
@@ -102,6 +113,7 @@ impl<F: Copy> Route<F> {
             }
             None => {
                 search.nodes.clear();
+                *search.turns = None;
                 // The first of many.
                 let _ = search.nodes.push(start);
                 search.checks = CHECKS_MAX;
@@ -109,7 +121,8 @@ impl<F: Copy> Route<F> {
             }
         }
         let found = search.run();
-        let unfinished = found.is_none() && !scene.affords_a_piece() && search.cheapest().is_some();
+        let remains = search.turns.is_some() || search.cheapest().is_some();
+        let unfinished = found.is_none() && !scene.affords_a_piece() && remains;
         *checks = if unfinished { search.checks } else { 0 };
         match found {
             Some(last) => {
@@ -157,13 +170,24 @@ impl<F: Copy> Search<'_, F> {
 
     /// The number of the corner from which the goal is straight ahead.
     fn run(&mut self) -> Option<usize> {
-        while self.checks > 0 && self.scene.affords_a_piece() {
-            let (number, node) = self.cheapest()?;
-            self.nodes.get_mut(number)?.estimate = f32::INFINITY;
-            let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
-            // Obstacles before a corner are avoided as well; each obstacle once on each side.
-            let mut turns = Turns::new(hit, self.goal);
+        while self.may_test() {
+            let (number, mut turns) = match self.turns.take() {
+                Some(cut_short) => cut_short,
+                None => {
+                    let (number, node) = self.cheapest()?;
+                    self.nodes.get_mut(number)?.estimate = f32::INFINITY;
+                    let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
+                    // Obstacles before a corner are avoided as well; each obstacle once on each side.
+                    (number, Turns::new(hit, self.goal))
+                }
+            };
+            let node = *self.nodes.get(number)?;
             while let Some(Turn { item: hit, side, to }) = turns.next() {
+                if !self.may_test() {
+                    turns.put_back();
+                    *self.turns = Some((number, turns));
+                    return None;
+                }
                 let Some((item, obstacle)) = self.scene.get(hit) else { continue };
                 let corner = self.corner(item, obstacle, &node, to, side);
                 if let Some(before) = self.reach(
@@ -178,6 +202,11 @@ impl<F: Copy> Search<'_, F> {
             }
         }
         None
+    }
+
+    /// Whether checks and effort suffice for another piece.
+    fn may_test(&self) -> bool {
+        self.checks > 0 && self.scene.affords_a_piece()
     }
 
     fn cheapest(&self) -> Option<(usize, Node<F>)> {
@@ -211,7 +240,7 @@ impl<F: Copy> Search<'_, F> {
 
     /// Adds a corner that can be reached from the node; else returns the number of the obstacle before it.
     fn reach(&mut self, number: usize, node: &Node<F>, at: Point<F>, extra: f32) -> Option<usize> {
-        if !self.scene.stays_within(at) || self.checks == 0 || !self.scene.affords_a_piece() {
+        if !self.scene.stays_within(at) {
             return None;
         }
         if let Some(hit) = self.first_hit(node, at) {
@@ -344,7 +373,7 @@ fn ahead_of<F: Copy>(moves: bool, velocity: Vector<F>, corner: Vector<F>, straig
 }
 
 /// A turn around this obstacle on this side, on the path to that point.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Turn<F> {
     item: usize,
     side: f32,
@@ -352,6 +381,7 @@ struct Turn<F> {
 }
 
 /// Turns still to be tried from a corner, in order of arrival.
+#[derive(Clone, Debug)]
 struct Turns<F> {
     list: heapless::Vec<Turn<F>, TURNS_MAX>,
     begin: usize,
@@ -379,6 +409,11 @@ impl<F: Copy> Turns<F> {
         let turn = self.list.get(self.begin).copied()?;
         self.begin += 1;
         Some(turn)
+    }
+
+    /// The turn that was next is next again.
+    fn put_back(&mut self) {
+        self.begin = self.begin.saturating_sub(1);
     }
 }
 

@@ -6,7 +6,7 @@
 //! ([`Intent::KeepPath`]). SI, body frame out.
 
 use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
-use motion::avoid::{self, Carried, Course, Restraint};
+use motion::avoid::{self, Carried, Course, Restraint, RouteVerdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::Instant;
 use protocol::robot_io::{OmniKick, WHEELED_STEP};
@@ -35,7 +35,7 @@ pub struct Drivetrain {
     /// The path in use; `None` while the robot stands.
     under_way: Option<CurrentPath>,
     carried: Carried<Field>,
-    /// Instructions that inputs took in this step.
+    /// Instructions that inputs and choices took in this step.
     spent: u32,
     /// Number of steps since the path was planned.
     path_age: u8,
@@ -98,9 +98,19 @@ impl Drivetrain {
         self.angular = twist.angular;
     }
 
-    /// Tells it how many instructions the inputs of this step took: so many fewer are left for planning.
+    /// Sets how many instructions this step has taken so far: so many fewer are left for planning.
     pub fn set_spent(&mut self, instructions: u32) {
         self.spent = instructions;
+    }
+
+    /// Number of steps since the path was planned.
+    pub fn path_age(&self) -> u8 {
+        self.path_age
+    }
+
+    /// Accounts for more of them.
+    pub fn spend(&mut self, instructions: u32) {
+        self.spent += instructions;
     }
 
     fn stand(&mut self, belief: &Belief, step: f32, face: Option<Angle>) -> Wanted {
@@ -124,6 +134,7 @@ impl Drivetrain {
                 let next = limits(belief, &drive).plan(from, self.velocity, to).at(step).velocity;
                 if belief.is_placing() { next } else { short_of_bodies(belief, next) }
             }
+            None if self.path_age <= COASTS_MAX => short_of_bodies(belief, self.velocity),
             _ => self.braked(step),
         };
         self.wanted(belief, step, velocity, Some(drive.face), &drive)
@@ -148,11 +159,14 @@ impl Drivetrain {
         let mut around = Surroundings::none(&field);
         around.look(belief, &field, drive.to, drive.mode);
         let effort = self.effort(belief, drive);
+        if effort < search_effort(around.obstacles.len()) {
+            around.leave_out_far();
+        }
         // Too little for all that is around: the path of a few steps before has looked at all of it.
         if effort < search_effort(around.obstacles.len()) && path_age < PATH_AGE_MAX {
             self.path_age = path_age;
-            let path = under_way.unwrap_or(CurrentPath { drive: *drive, towards: None });
-            return self.keep_path(belief, step, CurrentPath { drive: *drive, ..path });
+            let towards = under_way.and_then(|path| path.towards);
+            return self.keep_path(belief, step, CurrentPath { drive: *drive, towards });
         }
         // Where the effort is too small for all robots the drive only slows down for those far away.
         while effort < search_effort(around.obstacles.len()) && around.leave_out_farthest(from) {}
@@ -170,6 +184,14 @@ impl Drivetrain {
             effort,
         };
         let path = avoid::plan(&course, &mut self.carried);
+        if self.carried.is_searching() && matches!(path.verdict, RouteVerdict::Blocked { .. }) {
+            self.path_age = path_age;
+            if let Some(known) = under_way.filter(|known| known.towards.is_some() && path_age < PATH_AGE_MAX)
+            {
+                return self.keep_path(belief, step, CurrentPath { drive: *drive, ..known });
+            }
+            self.path_age = path_age.saturating_add(1);
+        }
         let is_free = path.restraint == Restraint::None;
         self.under_way = Some(CurrentPath { drive: *drive, towards: is_free.then(|| path.motion.to()) });
         let there = rests && from.distance(path.goal) < AT_PLACE;
@@ -187,9 +209,8 @@ impl Drivetrain {
         let stopped = is_moved_by_the_rules(belief.game.phase);
         let skill = match belief.game.phase {
             Phase::BallPlacement(Side::Ours) => EFFORT_OF_TAKING,
-            _ if stopped && belief.game.rule_role == RuleRole::Kicker => EFFORT_OF_TAKING,
-            _ if stopped => 0,
-            _ => EFFORT_OF_PLAY,
+            _ if stopped && belief.game.rule_role != RuleRole::Kicker => 0,
+            _ => EFFORT_OF_TAKING,
         };
         EFFORT.saturating_sub(skill + drive.effort + self.spent)
     }
@@ -283,15 +304,15 @@ const BOTH_BRAKE: f32 = 2.0;
 /// Number of steps for which a path is followed without planning again, as in a flood of packets that take
 /// the whole step: 0.2 s, the age of a command that is too old.
 const PATH_AGE_MAX: u8 = 20;
+/// Number of steps for which a robot without a free path keeps its velocity, where it has no time to plan.
+const COASTS_MAX: u8 = 2;
 /// Instructions that a step leaves for inputs, a search of its skill and planning a path: 36,000
 /// (docs/architecture.md §9) less what every step takes, a message sent, and what estimates err by. By 180 s
 /// of six images: the worst of 108,000 steps took 34,285 instructions, 999 of 1,000 at most 33,300.
-const EFFORT: u32 = 18_000;
-/// Instructions of a skill in play, where a case is carried out.
-const EFFORT_OF_PLAY: u32 = 3_500;
+const EFFORT: u32 = 19_500;
 /// Instructions that a plan among obstacles has besides the least, for a search.
 const EFFORT_OF_SEARCH: u32 = 1_500;
-/// Instructions of placing the ball or kicking a restart: it also plans a path behind the ball.
+/// Instructions of a skill, such as placing the ball or a kick: it also plans a path behind the ball.
 const EFFORT_OF_TAKING: u32 = 1_000;
 
 /// Whether the allowed positions of a robot change in this phase without a new directive: with the ball, or

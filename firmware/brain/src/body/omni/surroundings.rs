@@ -22,12 +22,15 @@ pub struct Surroundings {
     pub within: Shape<Field>,
     /// Number of obstacles that are no robots; they come first.
     pub fixed: usize,
+    /// Number of those and of the robots near the robot or its path; others follow.
+    pub near: usize,
 }
 
 impl Surroundings {
     /// An empty value to be filled by [`Surroundings::look`]; it is too large to be moved around.
     pub fn none(field: &FieldSpec) -> Self {
-        Self { obstacles: heapless::Vec::new(), within: field.surface().grown(-BODY - BORDER), fixed: 0 }
+        let within = field.surface().grown(-BODY - BORDER);
+        Self { obstacles: heapless::Vec::new(), within, fixed: 0, near: 0 }
     }
 
     /// Collects what matters to this robot on its path to `to`.
@@ -85,6 +88,9 @@ impl Surroundings {
         let radius = 2.0 * BODY + margin;
         // Out of a region all others count; first those that it could reach before it is planned again.
         for is_first in [true, false] {
+            if !is_first {
+                self.near = self.obstacles.len();
+            }
             if !(is_first || leaves) {
                 break;
             }
@@ -100,6 +106,11 @@ impl Surroundings {
                 }
             }
         }
+    }
+
+    /// Leaves out the robots that only a detour could meet.
+    pub fn leave_out_far(&mut self) {
+        self.obstacles.truncate(self.near);
     }
 
     /// Without capacity for another obstacle it is left out: rules and goals are added first, and other
