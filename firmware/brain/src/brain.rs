@@ -131,9 +131,10 @@ impl<'a> Brain<'a> {
         }
         let Since { effort, host_effort, gameplay_changed, .. } = self.since;
         let must_plan = self.reuses_left == 0 || self.actuation.path_age() % PLANS_EVERY == PLANS_EVERY - 1;
+        let needs_snapshot = self.host.as_ref().is_some_and(|host| host.needs_snapshot(now));
         let takes = match kind {
             PacketKind::Command => effort < INPUTS_MAX,
-            PacketKind::Snapshot => !must_plan && effort < INPUTS_MAX,
+            PacketKind::Snapshot => (!must_plan || needs_snapshot) && effort < INPUTS_MAX,
             PacketKind::Beacon => {
                 let gameplay = if gameplay_changed { 0 } else { EFFORT_OF_GAMEPLAY };
                 let most = if must_plan { INPUTS_OF_PLAN_MAX } else { INPUTS_MAX - gameplay };
@@ -343,6 +344,6 @@ const INPUTS_MAX: u32 = 18_000;
 const PATH_REUSES_MAX: u8 = 10;
 /// Where a path is not found in this number of steps, the last of them leaves snapshots unopened, so that it
 /// has the time.
-const PLANS_EVERY: u8 = 3;
+const PLANS_EVERY: u8 = 2;
 /// Steps between two that plan on a radio channel that is always full, as in division A.
 const PATH_REUSES: u8 = 3;

@@ -41,6 +41,10 @@ enum Restart {
     DoubleTouchBlocked,
 }
 
+/// Age of the own pose from which on a snapshot is opened whatever else a step has to do: three frames of 100
+/// Hz.
+const OWN_POSE_AGE_MAX: Duration = Duration::millis(30);
+
 impl Hosted {
     /// The state of robot `me` before any frame of a host.
     pub fn new(me: RobotId) -> Self {
@@ -112,6 +116,11 @@ impl Hosted {
             double_touch_blocked: self.restart == Restart::DoubleTouchBlocked,
         };
         belief.drive_cap = self.limits.as_ref().map_or_else(DriveCap::default, DriveCap::of);
+    }
+
+    /// Whether the own pose is so old that the next snapshot matters more than a plan.
+    pub fn needs_snapshot(&self, now: Instant) -> bool {
+        self.snapshot.own_age(now).is_none_or(|age| age > OWN_POSE_AGE_MAX)
     }
 
     /// The directive, while it is fresh.

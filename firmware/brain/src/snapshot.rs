@@ -165,6 +165,11 @@ impl HostSnapshot {
         self.own.filter(|own| now.since(own.received_at) <= OWN_LEASE).map(|own| own.pose)
     }
 
+    /// Time since the host sent the own pose; `None` before the first.
+    pub fn own_age(&self, now: Instant) -> Option<Duration> {
+        self.own.map(|own| now.since(own.received_at))
+    }
+
     /// The ball, where it will be `now`; `None` where the host sends none.
     pub fn ball(&self, now: Instant) -> Option<ReceivedBall> {
         let ball = self.ball.filter(|ball| now.since(ball.at) <= BALL_LEASE)?;

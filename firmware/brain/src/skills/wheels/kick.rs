@@ -150,7 +150,8 @@ const REST_SPEED_MAX: f32 = 0.25;
 /// by side.
 const LINES_UP: f32 = 0.165;
 const BODIES: f32 = 2.0 * ROBOT_RADIUS;
-/// An opponent this near that moves towards the ball comes for it, m: it is there in the time of half a circle around the ball.
+/// An opponent this near that moves towards the ball comes for it, m: it is there in the time of half a
+/// circle around the ball.
 const PRESSED: f32 = 1.3;
 /// Speed towards the ball from which on it comes, m/s; nearer than this, m, it need not move.
 const COMES_AT: f32 = 0.3;
