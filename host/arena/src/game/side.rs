@@ -17,7 +17,7 @@ use rules::restart::kickoff_places;
 use super::{GameConfig, GameError, TICK_US, TeamSetup, Watcher, numbers};
 
 pub(super) struct Team<'a> {
-    pub(super) host: Host,
+    pub(super) host: Box<Host>,
     strategy: Option<Box<dyn StrategyLink>>,
     colour: Colour,
     air: Air,
@@ -62,7 +62,7 @@ impl<'a> Team<'a> {
         let seed = config.seed ^ colour as u64;
         let air = Air::with_host(link.over(&config.air), seed, &ids);
         let strategy = setup.strategy.as_ref().map(started).transpose()?;
-        let host = Host::new(settings, Instant(0));
+        let host = Box::new(Host::new(settings, Instant(0)));
         Ok(Self { host, strategy, colour, air, players })
     }
 

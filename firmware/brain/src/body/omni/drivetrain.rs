@@ -309,7 +309,7 @@ const COASTS_MAX: u8 = 2;
 /// Instructions that a step leaves for inputs, a search of its skill and planning a path: 36,000
 /// (docs/architecture.md §9) less what every step takes, a message sent, and what estimates err by. By 180 s
 /// of six images: the worst of 108,000 steps took 34,285 instructions, 999 of 1,000 at most 33,300.
-const EFFORT: u32 = 19_500;
+const EFFORT: u32 = 18_000;
 /// Instructions that a plan among obstacles has besides the least, for a search.
 const EFFORT_OF_SEARCH: u32 = 1_500;
 /// Instructions of a skill, such as placing the ball or a kick: it also plans a path behind the ball.
