@@ -170,6 +170,14 @@ impl<F: Copy> Search<'_, F> {
 
     /// The number of the corner from which the goal is straight ahead.
     fn run(&mut self) -> Option<usize> {
+        // A search that was cut short takes a route that it can have, before it looks for a better one.
+        if self.turns.is_some()
+            && self.may_test()
+            && let Some((number, node)) = self.cheapest()
+            && self.first_hit(&node, self.goal).is_none()
+        {
+            return Some(number);
+        }
         while self.may_test() {
             let (number, mut turns) = match self.turns.take() {
                 Some(cut_short) => cut_short,
