@@ -130,7 +130,7 @@ impl<'a> Brain<'a> {
             return true;
         }
         let Since { effort, host_effort, gameplay_changed, .. } = self.since;
-        let must_plan = self.reuses_left == 0 || self.actuation.path_age() % PLANS_EVERY == PLANS_EVERY - 1;
+        let must_plan = self.reuses_left == 0 || self.actuation.needs_time();
         let needs_snapshot = self.host.as_ref().is_some_and(|host| host.needs_snapshot(now));
         let takes = match kind {
             PacketKind::Command => effort < INPUTS_MAX,
@@ -156,8 +156,12 @@ impl<'a> Brain<'a> {
 
     /// Accounts for a packet that was opened, whatever its tag was.
     pub(crate) fn note_opened(&mut self, kind: PacketKind) {
-        let is_beacon = kind == PacketKind::Beacon;
-        self.charge(if is_beacon { EFFORT_OF_FRAME } else { EFFORT_OF_HOST_FRAME }, kind);
+        let effort = match kind {
+            PacketKind::Beacon => EFFORT_OF_FRAME,
+            PacketKind::Command => EFFORT_OF_COMMAND,
+            PacketKind::Snapshot => EFFORT_OF_SNAPSHOT,
+        };
+        self.charge(effort, kind);
     }
 
     /// Accounts for a packet that was not opened.
@@ -323,12 +327,14 @@ impl<'a> Brain<'a> {
 /// 1,340, a forged snapshot of 120 B 2,080.
 const EFFORT_OF_PACKET: u32 = 590;
 const EFFORT_OF_FRAME: u32 = 760;
-/// The same of the host's: its snapshots are the longest frames, and all of it is covered by the tag.
-const EFFORT_OF_HOST_FRAME: u32 = 1_500;
+/// The same of a command: it is as long as a beacon, and all of it is covered by the tag.
+const EFFORT_OF_COMMAND: u32 = 900;
+/// The same of a part of a snapshot, the longest frame.
+const EFFORT_OF_SNAPSHOT: u32 = 1_500;
 /// Instructions of a packet that is left unopened: most of them are for handing it over.
 const EFFORT_OF_UNOPENED: u32 = 510;
 /// Instructions of what the host sends to a robot in a step: both parts of a snapshot and a command.
-const HOST_INPUTS: u32 = 3 * (EFFORT_OF_PACKET + EFFORT_OF_HOST_FRAME);
+const HOST_INPUTS: u32 = 3 * EFFORT_OF_PACKET + 2 * EFFORT_OF_SNAPSHOT + EFFORT_OF_COMMAND;
 /// Instructions of a gameplay that starts or ends.
 const EFFORT_OF_GAMEPLAY: u32 = 7_000;
 /// Instructions that inputs of a short step take where it plans, to within a packet: both parts of a
@@ -342,8 +348,5 @@ const INPUTS_MAX: u32 = 18_000;
 /// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual
 /// beacons between them, twice. Each step that plans adds one again.
 const PATH_REUSES_MAX: u8 = 10;
-/// Where a path is not found in this number of steps, the last of them leaves snapshots unopened, so that it
-/// has the time.
-const PLANS_EVERY: u8 = 2;
 /// Steps between two that plan on a radio channel that is always full, as in division A.
 const PATH_REUSES: u8 = 3;

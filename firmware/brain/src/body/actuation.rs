@@ -63,11 +63,11 @@ impl Actuation {
         matches!(self, Self::Wheels(..))
     }
 
-    /// Number of steps since it planned a path.
-    pub fn path_age(&self) -> u8 {
+    /// Whether the next plan of its path needs more time than the last ones had.
+    pub fn needs_time(&self) -> bool {
         match self {
-            Self::Legs(_) => 0,
-            Self::Wheels(_, wheels) => wheels.drivetrain.path_age(),
+            Self::Legs(_) => false,
+            Self::Wheels(_, wheels) => wheels.drivetrain.needs_time(),
         }
     }
 
