@@ -121,7 +121,15 @@ impl Script {
         let at = marked.unwrap_or(self.start.theirs[number].position);
         let field = &world.pitch().field;
         let off = off_area(field, at, AREA_OFF_M);
-        Wanted::go(off_ball(world, off, RESTART_OFF_M), face)
+        let to = off_ball(world, off, RESTART_OFF_M);
+        // It pushes none of ours out of its way.
+        let me = robot.pose.position;
+        let blocked =
+            world.robots().iter().filter(|other| other.present && other.who.colour == US).any(|other| {
+                let away = other.pose.position - me;
+                away.norm() < PUSHES_WITHIN_M && away.dot(to - me) > 0.0
+            });
+        Wanted::go(if blocked { me } else { to }, face)
     }
 
     /// Along our area with the ball, and a shot as soon as the goal is open.
@@ -413,6 +421,8 @@ const LINED_UP_WITHIN_M: f32 = 0.4;
 const MARKER_AT_M: f32 = 0.7;
 /// Distance from the ball at restarts, m.
 const RESTART_OFF_M: f32 = 0.6;
+/// A robot of ours this near in its way stops one that marks, m: two radii and its way to a stop.
+const PUSHES_WITHIN_M: f32 = 0.3;
 /// Distance of centres from our area, m.
 const AREA_OFF_M: f32 = 0.12;
 /// One of theirs this near one of ours marks it, m; from then on at most this far off, m.
