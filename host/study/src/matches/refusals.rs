@@ -1,5 +1,5 @@
-//! `refusals`: answers of a strategy that were refused, in a file beside the file of the matches, so that they
-//! outlive an interrupt: a line of JSON a match and team.
+//! `refusals`: answers of a strategy that were refused, in a file beside the file of the matches, so that
+//! they outlive an interrupt: a line of JSON a match and team.
 
 use std::collections::BTreeMap;
 use std::fs::OpenOptions;
