@@ -59,12 +59,13 @@ impl LostPackets {
 fn told(line: &str, waited: &Mutex<VecDeque<Duration>>) -> String {
     let waited = waited.lock().unwrap_or_else(PoisonError::into_inner);
     let lately = waited.back().zip(waited.front()).map(|(last, first)| last.saturating_sub(*first));
-    match lately.filter(|waited| line.starts_with(BITE) && *waited >= WAIT_MIN) {
-        Some(waited) => format!(
+    match lately.filter(|waited| *waited >= WAIT_MIN) {
+        Some(_) if line.contains(AWAKE) => "robot: awake again".to_owned(),
+        Some(waited) if line.contains(BITE) => format!(
             "this machine is too slow for real time: the emulator got no processor for {} ms, and the robot starts again; end other programs (it is no fault of the firmware)",
             waited.as_millis()
         ),
-        None => line.to_owned(),
+        _ => line.to_owned(),
     }
 }
 
@@ -89,8 +90,9 @@ fn time_waited(process: u32) -> Option<Duration> {
     Some(Duration::from_nanos(nanoseconds))
 }
 
-/// Begin of the line that a robot logs when its watchdog bites.
+/// Parts of the lines that a robot logs when its watchdog bites, and at the start that follows.
 const BITE: &str = "watchdog: a task hangs";
+const AWAKE: &str = "awake after the watchdog's bite";
 /// Begin of the line that the emulator's network writes for each packet that found no room.
 const LOST_PACKET: &str = "Slirp: Failed to send packet";
 /// Lost packets are reported at the first and then this often.
@@ -112,12 +114,15 @@ mod tests {
 
     #[test]
     fn a_bite_under_load_names_the_machine_and_any_other_line_stays() {
-        let bite = "watchdog: a task hangs; motors off";
+        let bite = "robot: watchdog: a task hangs; motors off";
+        let awake = "robot: awake after the watchdog's bite";
         let loaded = told(bite, &waited(&[100, 200, 600]));
         assert!(loaded.contains("no processor for 500 ms") && !loaded.contains("watchdog"), "{loaded}");
         for quiet in [&[][..], &[700], &[700, 720], &[700, 700, 749]] {
             assert_eq!(told(bite, &waited(quiet)), bite, "{quiet:?}");
+            assert_eq!(told(awake, &waited(quiet)), awake, "{quiet:?}");
         }
+        assert!(!told(awake, &waited(&[100, 200, 600])).contains("watchdog"));
         assert_eq!(told("radio: up", &waited(&[0, 900])), "radio: up");
     }
 
