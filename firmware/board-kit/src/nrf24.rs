@@ -60,7 +60,7 @@ pub fn robot<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
     number: RobotId,
     wires: ChipWires<S, E, N, D>,
 ) -> Result<ChipRadio<S, E, N, D>, Fault> {
-    let robot = Robot::start(now(), channel(team), number, (wires.spi, wires.enable, wires.pause))?;
+    let robot = Robot::start(now(), channel(team), number, wires.spi, wires.enable, wires.pause)?;
     Ok((ChipSender(()), ChipReceiver { robot, irq: wires.irq, served: Instant::now() }))
 }
 

@@ -45,12 +45,15 @@ pub struct Robot<S, C, D> {
 }
 
 impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
-    /// Sets the chip up, on its bus with its line CE and a timer for pauses, and listens.
+    /// Sets the chip up, on its bus with its line CE and a timer for pauses, and listens. Its arguments are
+    /// those of [`Base::start`](crate::Base::start) and the robot.
     pub fn start(
         now: Instant,
         channel: Channel,
         robot: RobotId,
-        (spi, chip_enable, pause): (S, C, D),
+        spi: S,
+        chip_enable: C,
+        pause: D,
     ) -> Result<Self, Fault> {
         let mut radio = Self {
             lines: Lines::new(spi, chip_enable, pause),

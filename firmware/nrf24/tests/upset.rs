@@ -25,8 +25,8 @@ fn play(at_base: bool, rate: Rate, upset: &[(u8, &[u8])]) -> ([u32; 3], u32) {
     let channel = Channel { team: TeamId(2), megahertz: 10, rate };
     let (a, b) = (air.chip(), air.chip());
     let mut base = Base::start(Instant(0), channel, a.spi(), a.chip_enable(), a.pause()).unwrap();
-    let lines = (b.spi(), b.chip_enable(), b.pause());
-    let mut robot = Robot::start(Instant(0), channel, RobotId::new(ROBOT).unwrap(), lines).unwrap();
+    let number = RobotId::new(ROBOT).unwrap();
+    let mut robot = Robot::start(Instant(0), channel, number, b.spi(), b.chip_enable(), b.pause()).unwrap();
     let (mut got, mut counter) = ([0; 3], 1);
     for now in (0..3_000_000_u64).step_by(100) {
         air.advance(now * 1000);

@@ -1,6 +1,6 @@
 //! `other_balls`: matches in drawn worlds with a ball that is not the match's: it never becomes the ball.
 
-use arena::game::{Game, GameConfig, Watcher};
+use arena::game::{Game, GameConfig, Watcher, Watchers};
 use geometry::{Field, Point};
 use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::WorldChoice;
@@ -14,8 +14,11 @@ use ssl::vision::{DetectionBall, WrapperPacket};
 const WRONG_M: f32 = 0.4;
 /// Share of packets with a wrong ball, at most.
 const WRONG_SHARE_MAX: f64 = 0.005;
-/// Worlds of the test; `OTHER_BALLS_WORLDS` sets another number. **With 40 it fails**: of 71,574 packets a
-/// flickering ball on the field is the ball in 1,069 (1.5 %), a spare or carried one in 75 (0.1 %).
+/// Worlds of the test; `OTHER_BALLS_WORLDS` sets another number. Of 200 worlds, 356,702 packets, a spare ball
+/// is the ball in 40 (0.01 %), a carried one in 144 (0.04 %), a flickering or lying one in none; without any
+/// other ball 0.63 % are wrong, nearly all in the 0.15 s after a ball was put elsewhere. A tracker that takes
+/// any steady ball for ours 0.1 s after ours vanished: spare 16.9 %, carried 16.6 %, lying 23.7 %, flickering
+/// 0.2 % (100 of these worlds, 0.62 % wrong without any other ball).
 const WORLDS: u64 = 6;
 const SECONDS: u32 = 20;
 
@@ -27,12 +30,14 @@ enum Other {
     Spare,
     /// At rest on the field, detected half of the time.
     Flickering,
+    /// At rest on the field from the start.
+    Lying,
     /// Carried along the touch line.
     Carried,
 }
 
 impl Other {
-    const ALL: [Self; 4] = [Self::None, Self::Spare, Self::Flickering, Self::Carried];
+    const ALL: [Self; 5] = [Self::None, Self::Spare, Self::Flickering, Self::Lying, Self::Carried];
 
     /// Its place in that world at `t`, s from the start; `None`: not detected.
     fn at(self, world: u64, t: f64, field: &FieldSpec) -> Option<Point<Field>> {
@@ -46,8 +51,10 @@ impl Other {
                 Some(Point::new(side * (0.5 * field.length + 0.2), 1.0 + share(3)))
             }
             Self::Spare => Some(Point::new(x, side * beside)),
-            Self::Flickering => ((t * 2.0 + f64::from(share(3))) % 1.0 < 0.5)
-                .then(|| Point::new(0.8 * x, side * field.width * (0.2 + 0.2 * share(2)))),
+            Self::Flickering | Self::Lying => {
+                let is_off = matches!(self, Self::Flickering) && (t * 2.0 + f64::from(share(3))) % 1.0 >= 0.5;
+                (!is_off).then(|| Point::new(0.8 * x, side * field.width * (0.2 + 0.2 * share(2))))
+            }
             Self::Carried => {
                 Some(Point::new(0.5 * field.length * (t * 0.35 + f64::from(x)).sin() as f32, side * beside))
             }
@@ -111,44 +118,55 @@ impl Watcher for Beside {
     }
 }
 
+impl Beside {
+    fn new(other: Other, world: u64) -> Self {
+        Self {
+            tracker: Tracker::new(TrackingSettings::default()),
+            other,
+            world,
+            field: League::DivisionB.field(),
+            has_packet: false,
+            added: 0,
+            wrong: 0,
+            packets: 0,
+            taken: 0,
+        }
+    }
+}
+
 #[test]
 fn another_ball_is_the_ball_in_at_most_half_a_percent_of_packets_of_drawn_worlds() {
     let worlds = std::env::var("OTHER_BALLS_WORLDS").map_or(WORLDS, |given| given.parse().unwrap());
-    let mut failed = Vec::new();
-    for other in Other::ALL {
-        let (mut wrong, mut taken, mut packets, mut added) = (0, 0, 0, 0);
-        for world in 1..=worlds {
-            let mut config = GameConfig::new(League::DivisionB, 900 + world, f64::from(SECONDS));
-            config.world = WorldChoice::Random(world);
-            let field = League::DivisionB.field();
-            let mut beside = Beside {
-                tracker: Tracker::new(TrackingSettings::default()),
-                other,
-                world,
-                field,
-                has_packet: false,
-                added: 0,
-                wrong: 0,
-                packets: 0,
-                taken: 0,
-            };
-            let mut backend = NativeBackend::new(case_library::division_b());
-            let mut game = Game::new(&config, &mut backend).unwrap();
-            for _ in 0..SECONDS * 100 {
-                game.step(&mut beside).unwrap();
-            }
-            wrong += beside.wrong;
-            taken += beside.taken;
-            packets += beside.packets;
-            added += beside.added;
+    // Wrong packets, those with the other ball, all, images with it.
+    let mut counts = [[0; 4]; Other::ALL.len()];
+    for world in 1..=worlds {
+        let mut config = GameConfig::new(League::DivisionB, 900 + world, f64::from(SECONDS));
+        config.world = WorldChoice::Random(world);
+        let mut besides = Other::ALL.map(|other| Beside::new(other, world));
+        let mut backend = NativeBackend::new(case_library::division_b());
+        let mut game = Game::new(&config, &mut backend).unwrap();
+        for _ in 0..SECONDS * 100 {
+            let watchers = besides.iter_mut().map(|beside| beside as &mut dyn Watcher);
+            game.step(&mut Watchers(watchers.collect())).unwrap();
         }
+        for (counts, beside) in counts.iter_mut().zip(&besides) {
+            let more = [beside.wrong, beside.taken, beside.packets, beside.added];
+            for (count, more) in counts.iter_mut().zip(more) {
+                *count += more;
+            }
+        }
+    }
+    let mut failed = Vec::new();
+    for (other, [wrong, taken, packets, added]) in Other::ALL.into_iter().zip(counts) {
         assert_eq!(added > packets / 4, !matches!(other, Other::None), "{other:?} was in {added} packets");
-        let share = wrong as f64 / packets as f64;
+        let [wrong_share, share] = [wrong, taken].map(|count| count as f64 / packets as f64);
         println!(
-            "{other:?}: {wrong} of {packets} wrong ({:.2} %), the other ball in {taken}; it was in {added}",
+            "{other:?}: {wrong} of {packets} wrong ({:.2} %), the other ball in {taken} ({:.2} %); it was in \
+             {added}",
+            100.0 * wrong_share,
             100.0 * share
         );
-        if taken as f64 / packets as f64 > WRONG_SHARE_MAX {
+        if share > WRONG_SHARE_MAX {
             failed.push((other, share));
         }
     }

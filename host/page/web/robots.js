@@ -22,7 +22,7 @@ export function between(robot, next, share) {
 }
 
 /** As large as it is, and never too small for its number, m. */
-export const robotRadius = (field, pixel) => Math.max(field.robot_radius, 7 * pixel);
+export const robotRadius = (field, pixel) => Math.max(field.robot_radius, 8 * pixel);
 
 export function drawRobots(pen, scene, next, share) {
   const { context, pixel } = pen;
@@ -122,15 +122,16 @@ function drawWords({ context, camera, ratio, words }, scene, next, share, radius
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.textAlign = "center";
   context.textBaseline = "middle";
-  const size = Math.max(10, Math.min(22, radius * camera.scale * 1.15));
+  const size = Math.max(11, Math.min(22, radius * camera.scale * 1.15));
   context.font = `700 ${size}px system-ui, "DejaVu Sans", sans-serif`;
-  const roles = shows("roles", true) && camera.scale > 40;
+  // A phone's field has 35 to 40 pixels a metre: roles stand where there is room, and the chosen robot's always.
+  const roles = shows("roles", true);
   for (const robot of scene.robots) {
     const at = camera.to(between(robot, next, share)[0]);
     context.fillStyle = colours[robot.team === "yellow" ? "yellow" : "blue-ink"];
     context.fillText(robot.id, at[0], at[1] + size * 0.04);
     words.keepFree(at, radius * camera.scale);
-    if (!roles || !robot.mind) continue;
+    if (!roles || !robot.mind || (camera.scale <= 24 && !isChosen(robot))) continue;
     // The chosen robot's word before all others.
     words.ask({ key: `${robot.team}${robot.id}`, at, text: label(robot.mind), tone: "text", gap: radius * camera.scale + 2, rank: isChosen(robot) ? 2 : 0 });
   }

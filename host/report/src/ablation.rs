@@ -1,9 +1,6 @@
 //! `ablation`: report of the ablations: a page, a plot and a Markdown table of what every change does, one
 //! line an arm.
 
-use std::io;
-use std::path::Path;
-
 use brain::Approach;
 use figures::numbers::{p, plain, signed};
 use figures::{
@@ -17,7 +14,7 @@ use study::statistics::{Count, newcombe, stars};
 use crate::columns::CONFIDENCE;
 use crate::page::{facts, style};
 use crate::table::with_detail;
-use crate::{Facts, labels, write_page};
+use crate::{Facts, labels};
 
 /// Inputs of an ablation's page.
 #[derive(Clone, Copy, Debug)]
@@ -41,11 +38,9 @@ struct MeasureStyle {
 }
 
 impl Ablation<'_> {
-    /// Writes the page and its plot; returns the plot.
-    pub fn write(&self, directory: &Path) -> io::Result<FigureFile> {
-        let file = self.figure().file();
-        write_page(directory, &self.html(), vec![file.clone()])?;
-        Ok(file)
+    /// The plot as a file.
+    pub fn figure_file(&self) -> FigureFile {
+        self.figure().file()
     }
 
     /// The whole page as one HTML document, plot included.

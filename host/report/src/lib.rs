@@ -21,10 +21,6 @@ mod page;
 mod plot;
 mod table;
 
-use std::fs;
-use std::io;
-use std::path::Path;
-
 use figures::FigureFile;
 use study::evaluation::{CaseUse, Claim, Comparison, JudgementLine, TableRow};
 
@@ -75,20 +71,4 @@ impl Report<'_> {
     pub fn markdown(&self, figures_directory: &str) -> String {
         markdown::markdown(self, figures_directory)
     }
-
-    /// `report.html` and `plots/*.svg` under `directory`; returns the figures.
-    pub fn write(&self, directory: &Path) -> io::Result<Vec<FigureFile>> {
-        write_page(directory, &self.html(), self.figure_files())
-    }
-}
-
-/// Writes `report.html` and `plots/*.svg` under `directory`; returns the figures.
-fn write_page(directory: &Path, html: &str, files: Vec<FigureFile>) -> io::Result<Vec<FigureFile>> {
-    let plots = directory.join("plots");
-    fs::create_dir_all(&plots)?;
-    for file in &files {
-        fs::write(plots.join(format!("{}.svg", file.name)), &file.svg)?;
-    }
-    fs::write(directory.join("report.html"), html)?;
-    Ok(files)
 }

@@ -4,8 +4,9 @@
 //! A camera's offset is first the difference of least delays: of all its packets in the last moments the
 //! quickest was as quick as the reference's. Robots that drive from one camera's view into another's correct
 //! it: a robot that appears ahead of where it was expected was seen later than the stamp says. The rest is
-//! the camera's lateness, in the network. Differences below [`EQUAL_WITHIN_US`] are no offset: clocks set by
-//! NTP agree better, and packets' delays no better.
+//! the camera's lateness, in the network. Differences below [`EQUAL_WITHIN_US`] are an offset only where such
+//! robots show it: clocks set by NTP agree better, and packets' delays no better. Robots of a camera that is
+//! late alone are carried on for its delay, so their velocity's noise counts that much.
 
 use heapless::Vec;
 use protocol::Instant;
@@ -34,13 +35,14 @@ const DRIFT_SHARE: i64 = 16;
 const GAP_SHARE: f32 = 0.1;
 /// Longest gap that is averaged, s.
 const GAP_MAX_S: f32 = 2.0;
-/// Robots that drive from view to view, for one correction.
+/// Robots that drive from view to view, for one correction, and where packets show that something differs.
 const CROSSINGS: usize = 16;
+const CROSSINGS_IF_DIFFERS: usize = 8;
 /// Least correction, µs, where packets show that something differs, and where they do not.
-const CORRECTION_MIN_US: i64 = 15_000;
+const CORRECTION_MIN_US: i64 = 10_000;
 const CORRECTION_ALONE_MIN_US: i64 = 40_000;
 /// Difference of delays at which something differs, µs.
-const DIFFERS_FROM_US: i64 = 30_000;
+const DIFFERS_FROM_US: i64 = 15_000;
 /// Unused frames are reported for this time after the last one, µs.
 const REPORTED_FOR_US: i64 = 1_000_000;
 
@@ -157,13 +159,13 @@ impl CameraClock {
         stepped
     }
 
-    /// Median of the crossings, when there are enough.
-    fn median(&mut self) -> Option<i64> {
-        if !self.crossings.is_full() {
+    /// Median of the crossings, when there are `enough`.
+    fn median(&mut self, enough: usize) -> Option<i64> {
+        if self.crossings.len() < enough {
             return None;
         }
         self.crossings.sort_unstable();
-        let median = self.crossings[CROSSINGS / 2];
+        let median = self.crossings[self.crossings.len() / 2];
         self.crossings.clear();
         Some(median)
     }
@@ -251,9 +253,13 @@ impl Cameras {
             }
             let clock = &mut self.cameras[camera];
             let _ = clock.crossings.push(micros);
-            let Some(median) = clock.median() else { continue };
             let differs = clock.offset != 0 || clock.late.abs().max(clock.apart.abs()) > DIFFERS_FROM_US;
-            let least = if differs { CORRECTION_MIN_US } else { CORRECTION_ALONE_MIN_US };
+            let (enough, least) = if differs {
+                (CROSSINGS_IF_DIFFERS, CORRECTION_MIN_US)
+            } else {
+                (CROSSINGS, CORRECTION_ALONE_MIN_US)
+            };
+            let Some(median) = clock.median(enough) else { continue };
             if median.abs() >= least {
                 // What the delays differ by is lateness, from now on.
                 clock.offset -= median;

@@ -52,11 +52,23 @@ fn packets(computers: [Computer; 2], seconds: f64) -> Vec<(f64, WrapperPacket)> 
     packets
 }
 
-/// From `from` s on: the worst error of a robot, mm, the least number of robots, and the share of packets
-/// with the ball within 0.1 m.
-fn follow(computers: [Computer; 2], from: f64) -> (f64, usize, f64, Vec<CameraStatus>) {
+/// Results of ten seconds of two cameras.
+struct Followed {
+    /// Worst error of a robot, mm, and the share of errors below 30 mm.
+    worst: f64,
+    within: f64,
+    /// Least number of robots.
+    least: usize,
+    /// Share of packets with the ball within 0.1 m.
+    balls: f64,
+    cameras: Vec<CameraStatus>,
+}
+
+/// Follows robots and ball from `from` s on.
+fn follow(computers: [Computer; 2], from: f64) -> Followed {
     let mut tracker = Tracker::default();
     let (mut worst, mut least, mut balls, mut all) = (0.0_f64, usize::MAX, 0_u32, 0_u32);
+    let (mut robots, mut within) = (0_u32, 0_u32);
     let mut end = Instant(0);
     for (arrived, packet) in packets(computers, from + 10.0) {
         end = Instant(((arrived + 1.0) * 1e6) as u64);
@@ -73,13 +85,16 @@ fn follow(computers: [Computer; 2], from: f64) -> (f64, usize, f64, Vec<CameraSt
             there += 1;
             let off = robot.pose.position.distance(Point::new(x as f32, y as f32));
             worst = worst.max(f64::from(off) * 1e3);
+            (robots, within) = (robots + 1, within + u32::from(off < 0.03));
         }
         least = least.min(there);
         let [x, y, _] = truth.balls[0];
         let ball = world.ball.is_some_and(|b| b.position.distance(Point::new(x as f32, y as f32)) < 0.1);
         (balls, all) = (balls + u32::from(ball), all + 1);
     }
-    (worst, least, f64::from(balls) / f64::from(all), tracker.cameras(end).collect())
+    let share = |of: u32, all: u32| f64::from(of) / f64::from(all);
+    let (within, balls) = (share(within, robots), share(balls, all));
+    Followed { worst, within, least, balls, cameras: tracker.cameras(end).collect() }
 }
 
 #[test]
@@ -87,15 +102,25 @@ fn clocks_of_two_vision_computers_may_differ_by_milliseconds_to_hours() {
     for ahead in [0.0, 0.03, 0.12, -0.12, 0.3, -0.7, 0.95, 2.0, -2.0, 3_600.0, -3_600.0, 1e8] {
         for delay in [0.0, 0.08] {
             let computers = [Computer::new(0.0, delay), Computer::new(ahead, delay)];
-            let (worst, least, balls, cameras) = follow(computers, 2.0);
+            let Followed { worst, least, balls, cameras, .. } = follow(computers, 2.0);
             println!("{ahead:+} s, {delay} s late: worst {worst:.0} mm, {least} robots, ball in {balls:.3}");
             assert!(least == 6 && balls >= 0.99, "{ahead} s: {least} robots, ball in {balls}");
-            // Differences of less than 50 ms are not seen: 1.5 m/s for 30 ms.
+            // Differences of less than 50 ms are found by robots that cross: 1.5 m/s for 30 ms until then.
             assert!(worst < if ahead == 0.03 { 90.0 } else { 30.0 }, "{ahead} s: {worst} mm");
             let told = cameras.iter().find(|status| status.camera == 1).unwrap();
-            let expected = if ahead.abs() < 0.05 { 0.0 } else { ahead * 1e3 };
-            assert!((told.ahead_ms as f64 - expected).abs() < 10.0, "{ahead} s: {told:?}");
+            assert!((told.ahead_ms as f64 - ahead * 1e3).abs() < 10.0, "{ahead} s: {told:?}");
         }
+    }
+}
+
+#[test]
+fn clocks_a_few_frames_apart_are_found_by_robots_that_drive_from_view_to_view() {
+    for ahead in [-0.045, -0.03, -0.02, 0.02, 0.03, 0.045] {
+        let followed = follow([Computer::new(0.0, 0.0), Computer::new(ahead, 0.0)], 12.0);
+        let Followed { worst, within, least, balls, cameras } = followed;
+        println!("{ahead:+} s: worst {worst:.0} mm, {within:.4} within 30 mm, {cameras:?}");
+        assert!(least == 6 && balls >= 0.99, "{ahead} s: {least} robots, ball in {balls}");
+        assert!(worst < 30.0, "{ahead} s: {worst} mm");
     }
 }
 
@@ -103,13 +128,15 @@ fn clocks_of_two_vision_computers_may_differ_by_milliseconds_to_hours() {
 fn a_camera_whose_packets_come_late_counts_late_and_is_not_dropped() {
     for (ahead, delay) in [(0.0, 0.04), (0.0, 0.08), (0.12, 0.08), (-0.12, 0.08), (2.0, 0.15)] {
         let computers = [Computer::new(0.0, 0.0), Computer::new(ahead, delay)];
-        let (worst, least, balls, cameras) = follow(computers, 12.0);
+        let Followed { worst, within, least, balls, cameras } = follow(computers, 12.0);
         println!(
-            "{ahead:+} s, camera 1 {delay} s late: worst {worst:.0} mm, {least} robots, {balls:.3}, {cameras:?}"
+            "{ahead:+} s, camera 1 {delay} s late: worst {worst:.0} mm, {within:.4} within 30 mm, {least} robots, {balls:.3}, {cameras:?}"
         );
         assert!(least == 6 && balls >= 0.98, "{ahead} s, {delay} s: {least} robots, ball in {balls}");
-        // Robots of the late camera are carried on for its delay.
+        // Robots of the late camera are carried on for its delay: a velocity that noise has put off by
+        // 0.4 m/s for a moment is 30 mm after 80 ms.
         assert!(worst < 100.0, "{ahead} s, {delay} s: {worst} mm");
+        assert!(within >= if delay > 0.1 { 0.95 } else { 0.995 }, "{ahead} s, {delay} s: {within}");
     }
 }
 

@@ -155,8 +155,8 @@ impl Team {
         let robots = (0..ROBOTS).map(|robot| {
             let chip = air.chip();
             let robot = RobotId::new(robot).unwrap();
-            let lines = (chip.spi(), chip.chip_enable(), chip.pause());
-            let end = Robot::start(Instant(0), channel, robot, lines).unwrap();
+            let (spi, enable, pause) = (chip.spi(), chip.chip_enable(), chip.pause());
+            let end = Robot::start(Instant(0), channel, robot, spi, enable, pause).unwrap();
             chip.take_spent();
             Node { end, chip, busy_until: 0, served: 0 }
         });

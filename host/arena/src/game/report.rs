@@ -6,7 +6,7 @@ use hil_sim::small_size::referee::{Blocked, Kind, RefereeEvent};
 use host::strategy::Team;
 use host::strategy::counters::PlayCounters;
 use rules::Colour;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::holds::{Hold, Holds};
 use super::{Game, GameConfig};
@@ -101,7 +101,7 @@ impl<T> PerTeam<T> {
 }
 
 /// Answers of a strategy in another program.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StrategyReport {
     /// Number of answers that were followed.
     pub used: u64,

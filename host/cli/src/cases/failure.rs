@@ -18,7 +18,9 @@ pub(super) enum NoCase {
     UnknownName { asked: String, league: String },
     #[error("no case fits the problem; name a case to see why, or ask `onetwo cases explain`")]
     NoneFits,
-    #[error("{0} defends the other goal than the problem; take the id of its copy from `onetwo cases list`")]
+    #[error(
+        "{0} defends the other goal than the problem; take the id of its copy from `onetwo cases list --all`"
+    )]
     OtherGoal(String),
     #[error("the library {0} holds no case; add one at <region>/<name>.toml")]
     EmptyLibrary(String),

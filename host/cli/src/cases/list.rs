@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use arena::cases::LibraryHandle;
+use casebase::Symmetry;
 use clap::Args;
 use serde::Serialize;
 
@@ -17,7 +18,10 @@ use crate::output;
 pub(crate) struct ListArgs {
     #[command(flatten)]
     directory: DirectoryArgs,
-    /// One JSON list instead of a table.
+    /// The mirror images of the cases too, each with its id.
+    #[arg(long)]
+    all: bool,
+    /// One JSON list instead of a table, mirror images included.
     #[arg(long)]
     json: bool,
 }
@@ -26,7 +30,16 @@ pub(super) fn run(args: &ListArgs) -> Result<ExitCode, Failure> {
     let shelves = crate::library::all(args.directory.library.as_deref())?;
     let rows: Vec<Row<'_>> = shelves.iter().flat_map(rows).collect();
     let mut output = output::lines();
-    let written = if args.json { write_json(&mut output, &rows) } else { write_table(&mut output, &rows) };
+    let written = if args.json {
+        write_json(&mut output, &rows)
+    } else {
+        let authored = |row: &&Row<'_>| args.all || row.symmetry == Symmetry::Identity.label();
+        let shown: Vec<_> = rows.iter().filter(authored).collect();
+        write_table(&mut output, &shown).and_then(|()| match rows.len() - shown.len() {
+            0 => Ok(()),
+            copies => writeln!(output, "{} cases; --all lists their {copies} mirror images too", shown.len()),
+        })
+    };
     written.and_then(|()| output.flush()).map_err(Failure::Output)?;
     Ok(ExitCode::SUCCESS)
 }
@@ -70,8 +83,9 @@ fn write_json(output: &mut impl Write, rows: &[Row<'_>]) -> io::Result<()> {
     output.write_all(if rows.is_empty() { b"]\n" } else { b"\n]\n" })
 }
 
-fn write_table(output: &mut impl Write, rows: &[Row<'_>]) -> io::Result<()> {
-    let width = |column: fn(&Row<'_>) -> usize, least| rows.iter().map(column).fold(least, usize::max);
+fn write_table(output: &mut impl Write, rows: &[&Row<'_>]) -> io::Result<()> {
+    let width =
+        |column: fn(&Row<'_>) -> usize, least| rows.iter().map(|row| column(row)).fold(least, usize::max);
     let league = width(|row| row.league.chars().count(), "league".len());
     let case = width(|row| row.case.chars().count(), "case".len());
     writeln!(

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use ::report::{Ablation, Facts};
 use clap::Args;
-use study::evaluation::{ARMS, Arm, EvaluationPlan, ablation_table, effects, write_effects};
+use study::evaluation::{ARMS, Arm, EvaluationPlan, ablation_table, effect_files, effects};
 use study::store::{EvaluationError, Shard, StoredExperiment, csv_hash, to_csv};
 
 use super::report::{self, PageArgs};
@@ -63,7 +63,7 @@ pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
     }
     let (_, default) = played.remove(0);
     let effects = effects(&default, &played);
-    write_effects(&effects, directory)?;
+    work::write_all(directory, effect_files(&effects)?)?;
     let hash = csv_hash(&to_csv(&default).map_err(EvaluationError::from)?);
     let facts = identity.map(|identity| Facts::of(&identity, &hash)).unwrap_or_default();
     report::write_ablation(

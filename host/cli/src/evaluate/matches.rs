@@ -4,7 +4,6 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::PoisonError;
 
 use arena::CaseNames;
 use arena::cases::LibraryHandle;
@@ -17,8 +16,8 @@ use rules::League;
 use serde_json::json;
 use study::matches::{
     Effect, MatchIdentity, MatchPlan, MatchRow, MatchTeam, Matches, Outcome, PAPER, PAPER_PASSES, Passes,
-    calibration_plot, check_same_matches, compare_matches, comparison_table, effects, markdown, our_passes,
-    outcomes, plot,
+    Refusal, RefusalFile, RefusedAnswers, calibration_plot, check_same_matches, compare_matches,
+    comparison_table, effects, markdown, our_passes, outcomes, plot, summary,
 };
 use study::store::{EvaluationError, Shard, StoredExperiment, csv_hash, merge, to_csv};
 
@@ -99,35 +98,42 @@ pub(super) struct MatchesArgs {
 
 pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
     if !args.merge.is_empty() {
-        let mut kept = Vec::new();
+        let (mut kept, mut refusals) = (Vec::new(), Vec::new());
         for directory in &args.merge {
-            kept.extend(shards::<MatchRow>(directory)?);
+            for shard in shards::<MatchRow>(directory)? {
+                refusals.extend(RefusalFile::beside(&shard.file).read()?);
+                kept.push(shard);
+            }
         }
         let (identity, rows) = merge(kept)?;
         let directory = args.work.directory(args.shard)?;
-        return args.finish(&identity, &rows, directory);
+        return args.finish(&identity, &rows, &refusals, directory);
     }
     let library_handle = library::of_match(&args.directory, args.league)?;
-    let matches = Matches {
+    let mut matches = Matches {
         plan: args.plan(),
         base: library_handle.as_ref().map_or_else(CaseBase::default, LibraryHandle::lasting_base),
         settings: args.settings.choose()?.settings,
         program: VERSION.to_owned(),
         names: CaseNames::new(library_handle.as_ref().map_or_else(Vec::new, LibraryHandle::names)),
-        refusals: study::matches::Refusals::default(),
+        refusals: None,
     };
     // Before hours are spent on matches that cannot be compared.
     args.before(&matches.identity())?;
     let directory = args.work.directory(args.shard)?;
     let file = directory.join(args.shard.file_name());
     let pool = args.work.pool()?;
+    if matches.plan.strategy.is_some() {
+        matches.refusals = Some(RefusalFile::beside(&file).open(&file)?);
+    }
     let rows =
         work::with_bar(&pool, "playing", |on_progress| matches.play_shard(args.shard, &file, on_progress))?;
-    for (number, warning) in matches.refusals.lock().unwrap_or_else(PoisonError::into_inner).iter() {
-        note!("warning  match {number}: {warning}");
+    let refusals = matches.refusals.as_ref().map_or_else(|| Ok(Vec::new()), RefusalFile::read)?;
+    for Refusal { number, answers, .. } in &refusals {
+        note!("warning  match {number}: {}", answers.warning().unwrap_or_default());
     }
     if args.shard == Shard::WHOLE {
-        return args.finish(&matches.identity(), &rows, directory);
+        return args.finish(&matches.identity(), &rows, &refusals, directory);
     }
     let (kept, out) = (file.display(), directory.display());
     work::print_text(&format!(
@@ -179,9 +185,10 @@ impl MatchesArgs {
         &self,
         identity: &MatchIdentity,
         rows: &[MatchRow],
+        refusals: &[Refusal],
         directory: &Path,
     ) -> Result<ExitCode, Failure> {
-        let made = Made::new(identity, rows)?;
+        let made = Made::new(identity, rows, refusals)?;
         let before = self.before(identity)?;
         let compared =
             before.map(|before| comparison_table(&compare_matches(&identity.plan, &before, rows)) + "\n");
@@ -196,9 +203,10 @@ impl MatchesArgs {
         }
         let (matches, seed) = (made.matches, made.identity.plan.seed);
         work::print_text(&format!(
-            "{}{}\n{matches} matches, seed {seed}, csv hash {}, in {}\n",
+            "{}{}\n{}{matches} matches, seed {seed}, csv hash {}, in {}\n",
             compared.unwrap_or_default(),
             made.tables(),
+            summary(&made.outcomes),
             made.hash,
             directory.display()
         ))?;
@@ -215,10 +223,12 @@ struct Made<'a> {
     outcomes: Vec<Outcome>,
     effects: Vec<Effect>,
     passes: Passes,
+    /// Refused answers, where a strategy plays.
+    refused: Option<RefusedAnswers>,
 }
 
 impl<'a> Made<'a> {
-    fn new(identity: &'a MatchIdentity, rows: &[MatchRow]) -> Result<Self, Failure> {
+    fn new(identity: &'a MatchIdentity, rows: &[MatchRow], refusals: &[Refusal]) -> Result<Self, Failure> {
         let csv = to_csv(rows).map_err(EvaluationError::from)?;
         Ok(Self {
             identity,
@@ -228,13 +238,14 @@ impl<'a> Made<'a> {
             outcomes: outcomes(&identity.plan, rows),
             effects: effects(&identity.plan, rows),
             passes: our_passes(rows),
+            refused: identity.plan.strategy.as_ref().map(|_| RefusedAnswers::of(refusals)),
         })
     }
 
     fn json(&self) -> Result<Vec<u8>, Failure> {
         let json = json!({
             "identity": self.identity, "csv_hash": self.hash, "pairs": self.outcomes, "effects": self.effects,
-            "restart_passes": self.passes, "paper": { "table_1": PAPER_PASSES, "table_2": PAPER },
+            "restart_passes": self.passes, "refused_answers": self.refused, "paper": { "table_1": PAPER_PASSES, "table_2": PAPER },
         });
         serde_json::to_vec_pretty(&json).map_err(|error| Failure::Output(error.into()))
     }

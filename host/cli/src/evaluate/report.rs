@@ -19,7 +19,7 @@ use study::store::{StoredExperiment, in_words, merge};
 use super::{merge as shards, work};
 use crate::Failure;
 use crate::args::{DirectoryArgs, LibraryArgs, NoSuchSetting, VERSION};
-use crate::destination;
+use crate::destination::{self, FileKind};
 use crate::output::{note, print_text, printable_path};
 use crate::{picture, setup};
 
@@ -66,10 +66,8 @@ pub(super) fn write_ablation(
     directory: &Path,
     args: &PageArgs,
 ) -> Result<(), Failure> {
-    let drawn = ablation.write(directory).map_err(|error| unwritten(&directory.join(REPORT_FILE), error))?;
-    if args.png {
-        picture::write(&directory.join("plots").join(&drawn.name).with_extension("png"), &drawn.svg)?;
-    }
+    let drawn = ablation.figure_file();
+    write_page(directory, &ablation.html(), std::slice::from_ref(&drawn), args.png)?;
     match &args.markdown {
         Some(file) => {
             insert(file, ("evaluation", "ablations"), |directory| ablation.markdown(directory), vec![drawn])
@@ -128,20 +126,28 @@ impl Made {
     }
 
     fn write(&self, results: &Results, directory: &Path, args: &ReportArgs) -> Result<(), Failure> {
-        let written = self.report(results).write(directory);
-        let files = written.map_err(|error| unwritten(&directory.join(REPORT_FILE), error))?;
-        if args.png {
-            for drawn in files {
-                picture::write(&directory.join("plots").join(drawn.name).with_extension("png"), &drawn.svg)?;
-            }
-        }
-        Ok(())
+        let report = self.report(results);
+        write_page(directory, &report.html(), &report.figure_files(), args.png)
     }
 
     fn write_markdown(&self, results: &Results, file: &Path) -> Result<(), Failure> {
         let report = self.report(results);
         insert(file, ("evaluation", "figures"), |directory| report.markdown(directory), report.figure_files())
     }
+}
+
+/// Writes a page, and its figures into `plots` beside it; with `png` as pictures too.
+fn write_page(directory: &Path, html: &str, figures: &[FigureFile], png: bool) -> Result<(), Failure> {
+    let plots = directory.join("plots");
+    destination::make_directory(&plots)?;
+    for drawn in figures {
+        let file = plots.join(&drawn.name);
+        picture::write(&file.with_extension("svg"), &drawn.svg)?;
+        if png {
+            picture::write(&file.with_extension("png"), &drawn.svg)?;
+        }
+    }
+    work::write(&directory.join(REPORT_FILE), FileKind::Html, html.as_bytes())
 }
 
 /// Longest Markdown file that is read, bytes.

@@ -194,13 +194,33 @@ pub(super) fn run(
 
 /// Writes everything, and prints the tables, the verdicts and their paths.
 pub(super) fn finish(results: &Results, directory: &Path) -> Result<(), Failure> {
-    results.write(directory)?;
+    write_all(directory, results.files()?)?;
     let (trials, seed, hash) = (results.rows.len(), results.identity.plan.seed, &results.hash);
     let (tables, verdicts) = (summary(results), verdicts(results));
+    let fewest = results.tables.iter().map(|row| row.trials).min().unwrap_or_default();
+    let advice = if fewest < TRIALS_TO_JUDGE {
+        let points = 98.0 / f64::from(fewest.max(1)).sqrt();
+        format!(
+            "{fewest} trials a row are few: a share of one half is known to ±{points:.0} points, so lines are missed and claims undecided by chance; judge by {TRIALS_TO_JUDGE} or more (--trials)\n"
+        )
+    } else {
+        String::new()
+    };
     print_text(&format!(
-        "{tables}{verdicts}{trials} trials, seed {seed}, csv hash {hash}, in {}\n",
+        "{tables}{verdicts}{advice}{trials} trials, seed {seed}, csv hash {hash}, in {}\n",
         directory.display()
     ))
+}
+
+/// Trials of a row by which approaches are judged: a share is then known to ±5 points.
+const TRIALS_TO_JUDGE: u32 = 400;
+
+/// Writes files of results into an existing directory.
+pub(super) fn write_all(directory: &Path, files: Vec<(&str, Vec<u8>)>) -> Result<(), Failure> {
+    files.into_iter().try_for_each(|(name, bytes)| {
+        let kind = if name.ends_with(".csv") { FileKind::Csv } else { FileKind::Json };
+        write(&directory.join(name), kind, &bytes)
+    })
 }
 
 /// Writes a file of results.

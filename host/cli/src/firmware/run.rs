@@ -4,9 +4,11 @@
 mod emulator_log;
 mod udp;
 
+use std::io;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Stdio};
+use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -19,6 +21,7 @@ use super::failure::FirmwareError;
 use super::{at, build};
 use crate::Failure;
 use crate::args::parsers;
+use crate::stop::stopped_by_hand;
 
 /// How robots are run.
 #[derive(Debug, Args)]
@@ -59,23 +62,39 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     // Checked before anything is built or started.
     page.map(check).transpose()?;
     let qemu = ensure_qemu(Install::ForUser)?;
-    let mut command = Command::new(qemu);
-    command.args(qemu_arguments(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
-    let mut child = command.stderr(Stdio::piped()).spawn()?;
-    emulator_log::follow(&mut child, "");
+    let image = build(Program::Free)?;
+    let stopped = stopped_by_hand();
+    let mut emulator = Emulator::start(&qemu, &qemu_arguments(&image, page, &args.serial), "")?;
     let end = args.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
-    let status = loop {
-        if let Some(status) = child.try_wait()? {
-            break status;
+    while !stopped.load(Ordering::Relaxed) && end.is_none_or(|end| Instant::now() < end) {
+        match emulator.0.try_wait()? {
+            Some(status) if status.success() => break,
+            Some(status) => return Err(FirmwareError::Ended(status).into()),
+            None => thread::sleep(CHECK_EVERY),
         }
-        if end.is_some_and(|end| Instant::now() >= end) {
-            child.kill()?;
-            child.wait()?;
-            return Ok(());
-        }
-        thread::sleep(CHECK_EVERY);
-    };
-    if status.success() { Ok(()) } else { Err(FirmwareError::Ended(status).into()) }
+    }
+    Ok(())
+}
+
+/// A running emulator; killed when this is dropped, and by the kernel when this process is killed.
+struct Emulator(Child);
+
+impl Emulator {
+    /// Starts it; its log goes to stderr, each line behind `prefix`.
+    fn start(qemu: &Path, arguments: &[String], prefix: &str) -> io::Result<Self> {
+        let mut command = hil_sim::emulator_command(qemu);
+        let mut child = command.args(arguments).stdin(Stdio::null()).stderr(Stdio::piped()).spawn()?;
+        emulator_log::follow(&mut child, prefix);
+        Ok(Self(child))
+    }
+}
+
+impl Drop for Emulator {
+    fn drop(&mut self) {
+        // It may have ended by itself; either way nothing remains to be done.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
 }
 
 /// The emulators are looked after this often.

@@ -28,7 +28,8 @@ pub(crate) struct CalibrateArgs {
     #[arg(long, value_name = "CSV")]
     chip: Option<PathBuf>,
     /// Drives, a CSV file with the columns distance_m, by tape, and counts, a wheel's that stands along the
-    /// drive.
+    /// drive. A counter has 16 bits: drive at most four fifths of the distance that `onetwo robot show`
+    /// prints for it, or give the sum.
     #[arg(long, value_name = "CSV")]
     drive: Option<PathBuf>,
     /// What a drive is put down to: the wheels' radius, or the encoders' gear.

@@ -14,6 +14,13 @@ const FRAMES_TO_BELIEVE: u16 = 2;
 const FRAMES_TO_TAKE_OVER: u16 = 5;
 /// Time without detection after which another ball may be chosen, s: six frames of 60 Hz.
 const REPLACED_AFTER_S: f32 = 0.1;
+/// The first choice among several balls lasts for this time, s: cameras send their first frames one after the
+/// other.
+const FIRST_CHOICE_LASTS_S: f32 = 0.3;
+/// A ball that has been out of the field for this time, s, is replaced by one that rests inside for so many
+/// camera frames: people play on with another.
+const OUT_AFTER_S: f32 = 0.5;
+const FRAMES_PUT_BACK: u16 = 30;
 /// An unseen ball is forgotten after this time, s; at a robot's front, where robots hide balls, this time is
 /// longer.
 const FORGOTTEN_AFTER_S: f32 = 1.0;
@@ -24,6 +31,8 @@ const OTHER_FORGOTTEN_AFTER_S: f32 = 0.3;
 const SAME_BALL_WITHIN_M: f32 = 0.045;
 /// A ball this near to where ours is expected may be ours though another one lies there, m.
 const OTHER_WITHIN_M: f32 = 0.1;
+/// A blob farther from where another ball is expected is not that ball, m: a ball carried by hand turns.
+const OTHER_JUMPS_WITHIN_M: f32 = 0.3;
 /// A flying ball appears at most this far from its parabola, m; farther, it is another ball or has hit
 /// something.
 const FLIGHT_GATE_M: f32 = 0.4;
@@ -67,23 +76,26 @@ impl Balls {
         let others = self.tracks.iter_mut().enumerate().filter(|(index, _)| Some(*index) != chosen);
         let fitting = others.filter_map(|(_, track)| {
             let track = track.as_mut()?;
-            track.fits(position, at, models).map(|off| (off, track))
+            let off = track.fits(position, at, models)?;
+            // A kicked ball is a new one; nobody kicks another ball.
+            (!track.other || off <= OTHER_JUMPS_WITHIN_M).then_some((off, track))
         });
         if let Some((_, track)) = fitting.reduce(|best, next| if next.0 < best.0 { next } else { best }) {
             track.note(frame, seen);
-            track.inside |= around.scene.is_inside(position);
+            track.note_inside(around.scene.is_inside(position));
             track.see(&glimpse, models, around.sigma);
             return;
         }
-        // A new track; without room it replaces the one unseen the longest.
-        let other = self.is_other(position, at);
-        let inside = around.scene.is_inside(position);
-        let room = self.tracks.iter_mut().enumerate().filter(|(index, _)| Some(*index) != chosen);
-        let seen_last = |track: &Option<Track>| track.map_or(Captured::MIN, |track| track.seen);
-        if let Some((_, place)) = room.min_by_key(|(_, track)| seen_last(track)) {
+        // A new track; without room it replaces the one unseen the longest, a known ball last.
+        let room = (0..self.tracks.len()).filter(|index| Some(*index) != chosen);
+        let rank = |index: &usize| self.tracks[*index].map(|track| (track.other, track.seen));
+        if let Some(index) = room.min_by_key(rank) {
             let mut track = Track::new(&glimpse, seen, around.sigma);
-            (track.other, track.inside) = (other, inside);
-            *place = Some(track);
+            track.other = self.is_other(position, at);
+            track.note_inside(around.scene.is_inside(position));
+            if let Some(replaced) = self.tracks[index].replace(track) {
+                self.remember_other(&replaced);
+            }
         }
     }
 
@@ -114,15 +126,21 @@ impl Balls {
     pub(super) fn choose(&mut self, now: Captured, around: Around<'_>) {
         let playable = |track: &Track| around.scene.is_playable(track.plane.position);
         let current = self.chosen_track();
-        let lost = current.is_none_or(|track| now - track.seen > micros(REPLACED_AFTER_S));
-        let settled = current.is_some_and(|track| playable(track) && track.inside) && !self.is_doubtful();
-        if !lost && settled {
+        let lost = current.is_none_or(|track| now - track.agreed > micros(REPLACED_AFTER_S));
+        let is_first = self.is_first_choice(now);
+        let is_out = current.is_some_and(|track| now - track.inside_at.unwrap_or(now) > micros(OUT_AFTER_S));
+        let settled =
+            current.is_some_and(|track| playable(track) && track.inside_at.is_some()) && !self.is_doubtful();
+        if !lost && settled && !is_first && !is_out {
             return;
         }
         let needed = if current.is_some() { FRAMES_TO_TAKE_OVER } else { FRAMES_TO_BELIEVE };
-        let last = current.map(|track| track.plane.position);
+        // A match begins at the centre of the field.
+        let last = current.filter(|_| !is_first).map(|track| track.plane.position);
+        let last = last.or(self.gone.map(|gone| gone.place)).unwrap_or_default();
         let outside = current.is_some_and(|track| !playable(track));
-        let mut best: Option<(usize, (bool, f32))> = None;
+        let rank = |track: &Track| (track.other, !playable(track), last.distance(track.plane.position));
+        let mut best: Option<(usize, (bool, bool, f32))> = None;
         for (index, track) in self.tracks.iter().enumerate() {
             let Some(track) = track.as_ref().filter(|_| self.chosen != Some(index)) else { continue };
             let steady = track.images >= needed && now - track.seen <= micros(UNSEEN_AFTER_S);
@@ -130,24 +148,33 @@ impl Balls {
                 self.may_be_ours(track, now, around)
             } else if self.is_doubtful() {
                 self.is_back(track, now, around)
+            } else if settled && is_out {
+                let is_inside = track.inside_at == Some(track.seen);
+                is_inside && !track.other && track.rests() && track.images >= FRAMES_PUT_BACK
+            } else if settled {
+                current.is_some_and(|current| rank(track) < rank(current))
             } else {
-                playable(track) && (track.inside || outside)
+                playable(track) && (track.inside_at.is_some() || outside)
             };
             if !steady || !can_be_it {
                 continue;
             }
-            let away = last.map_or(0.0, |last| last.distance(track.plane.position));
-            let rank = (!playable(track), away);
-            if best.is_none_or(|(_, least)| rank < least) {
-                best = Some((index, rank));
+            if best.is_none_or(|(_, least)| rank(track) < least) {
+                best = Some((index, rank(track)));
             }
         }
         if let Some((index, _)) = best {
+            self.first = self.first.or_else(|| current.is_none().then_some(now));
             if let Some(track) = self.tracks[index] {
                 self.note_replacement(&track, now, around);
             }
             self.become_ball(Some(index));
         }
+    }
+
+    /// Whether the ball was first chosen just now.
+    pub(super) fn is_first_choice(&self, now: Captured) -> bool {
+        self.first.is_some_and(|first| now - first <= micros(FIRST_CHOICE_LASTS_S))
     }
 
     fn become_ball(&mut self, index: Option<usize>) {

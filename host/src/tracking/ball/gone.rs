@@ -11,6 +11,7 @@ use protocol::Who;
 use super::track::Track;
 use super::{Around, Balls, UNSEEN_AFTER_S};
 use crate::tracking::robots::{micros, seconds};
+use crate::tracking::scene::Scene;
 use crate::tracking::seen::{Captured, Frame};
 
 /// A robot whose centre is this near may cover the ball: its hull, and the shadow of a robot 0.15 m high
@@ -31,6 +32,9 @@ const REAPPEARS_WITHIN_M: f32 = 0.3;
 const UNSEEN_SPEED_M_S: f32 = 6.5;
 /// A blob that first shows on the field within this time after ours vanished was put there, s.
 const AT_ONCE_S: f32 = 0.1;
+/// A ball that vanished in the open, and was put elsewhere at once, comes back within this time if it was
+/// not put there, s: cameras miss a fast one for some frames.
+const PUT_DOUBTED_FOR_S: f32 = 0.3;
 /// A ball that a robot covers is not elsewhere on the field before this time, s, and not beside it before
 /// that.
 const COVERED_MIN_S: f32 = 0.3;
@@ -42,6 +46,10 @@ const BESIDE_MIN_M: f32 = 0.3;
 /// Two blobs that were seen for this time by any cameras are two balls too, s: longer than a chip that
 /// cameras see at different places.
 const BESIDE_FOR_S: f32 = 1.0;
+/// A blob that rests this far from ours, m, is another ball after this time, s: no chip stands still for a
+/// camera, and clocks of cameras differ by less.
+const FAR_BESIDE_MIN_M: f32 = 1.0;
+const REST_BESIDE_FOR_S: f32 = 0.2;
 /// A blob this near the place of another ball is that ball, m.
 const SAME_PLACE_M: f32 = 0.15;
 /// The place of another ball that is not seen is remembered for this time, s: a robot or a person stands in
@@ -54,11 +62,11 @@ const PLACES_MAX: usize = 4;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gone {
     seen: Captured,
-    place: Point<Field>,
+    pub(super) place: Point<Field>,
     /// The robot that covers it.
     cover: Option<Who>,
-    /// Another blob was made the ball meanwhile; ours may come back.
-    replaced: bool,
+    /// Until when ours may come back, though another blob was made the ball meanwhile.
+    replaced_until: Option<Captured>,
 }
 
 /// Places of other balls, each with the time of its last detection.
@@ -67,12 +75,13 @@ pub(super) type OtherPlaces = [Option<(Point<Field>, Captured)>; PLACES_MAX];
 impl Balls {
     /// Records since when and where the ball is not seen, and which robot covers it.
     pub(super) fn note_absence(&mut self, now: Captured, around: Around<'_>) {
-        self.gone = self.gone.filter(|gone| now - gone.seen <= micros(COVERED_MAX_S));
-        if self.gone.is_some_and(|gone| gone.replaced) {
+        let until = |gone: &Gone| gone.replaced_until.unwrap_or(gone.seen + micros(COVERED_MAX_S));
+        self.gone = self.gone.filter(|gone| now <= until(gone));
+        if self.is_doubtful() {
             return;
         }
         let Some(track) = self.chosen_track() else { return };
-        if now - track.seen <= micros(UNSEEN_AFTER_S) {
+        if now - track.agreed <= micros(UNSEEN_AFTER_S) {
             self.gone = None;
             return;
         }
@@ -80,10 +89,10 @@ impl Balls {
         let nearest = around.robots.nearest(place, now).filter(|(_, _, off)| *off <= COVERS_WITHIN_M);
         let cover = self.gone.and_then(|gone| gone.cover);
         self.gone = Some(Gone {
-            seen: track.seen,
+            seen: track.agreed,
             place: track.seen_at,
             cover: cover.or(nearest.map(|(who, _, _)| who)),
-            replaced: false,
+            replaced_until: None,
         });
     }
 
@@ -100,12 +109,15 @@ impl Balls {
         }
         // One blob goes and another comes at once: the ball was put there.
         let between = track.began - gone.seen;
-        if playable && track.inside && (0..=micros(AT_ONCE_S)).contains(&between) {
+        if playable
+            && track.inside_at.is_some()
+            && (-micros(REST_BESIDE_FOR_S)..=micros(AT_ONCE_S)).contains(&between)
+        {
             return true;
         }
         let covered = match gone.cover {
             None => 0.0,
-            Some(_) if track.inside => COVERED_MIN_S,
+            Some(_) if track.inside_at.is_some() => COVERED_MIN_S,
             Some(_) if playable => COVERED_BESIDE_MIN_S,
             Some(_) => return false,
         };
@@ -130,41 +142,51 @@ impl Balls {
 
     /// Whether this blob is the ball that another one has replaced meanwhile.
     pub(super) fn is_back(&self, track: &Track, now: Captured, around: Around<'_>) -> bool {
-        let replaced = self.gone.filter(|gone| gone.replaced && track.began >= gone.seen && !track.other);
+        let replaced = self.gone.filter(|gone| track.began >= gone.seen && !track.other);
         replaced.is_some_and(|gone| Self::returned(&gone, track, now, around))
     }
 
     /// Whether a blob that is not the ball for certain is the ball now.
     pub(super) fn is_doubtful(&self) -> bool {
-        self.gone.is_some_and(|gone| gone.replaced)
+        self.gone.is_some_and(|gone| gone.replaced_until.is_some())
     }
 
     /// Notes that a blob becomes the ball: for good where ours came out there.
     pub(super) fn note_replacement(&mut self, track: &Track, now: Captured, around: Around<'_>) {
+        let is_doubtful = self.is_doubtful();
         self.gone = self
             .gone
-            .filter(|gone| !gone.replaced && (track.other || !Self::returned(gone, track, now, around)));
+            .filter(|gone| !is_doubtful && (track.other || !Self::returned(gone, track, now, around)));
         if let Some(gone) = &mut self.gone {
-            gone.replaced = true;
+            let was_put_there = gone.cover.is_none() && !track.other;
+            let doubted_us = micros(if was_put_there { PUT_DOUBTED_FOR_S } else { COVERED_MAX_S });
+            gone.replaced_until = Some(gone.seen + doubted_us);
         }
     }
 
-    /// Marks blobs that are seen beside the ball as other balls.
-    pub(super) fn mark_others(&mut self, frame: &Frame) {
+    /// Marks blobs that are seen beside the ball as other balls, but for one that is put into the field while
+    /// the ball is out.
+    pub(super) fn mark_others(&mut self, frame: &Frame, scene: &Scene) {
         let Some(ball) = self.chosen_track().copied() else { return };
         let now = frame.at;
-        if self.is_doubtful() || now - ball.seen > micros(UNSEEN_AFTER_S) {
+        let is_certain = !self.is_doubtful() && !self.is_first_choice(now);
+        if !is_certain || now - ball.agreed > micros(UNSEEN_AFTER_S) {
             return;
         }
+        let is_out = !scene.is_inside(ball.plane.position);
         let in_frame = |track: &Track| track.seen == now && track.camera == frame.camera;
         let chosen = self.chosen;
         for (index, place) in self.tracks.iter_mut().enumerate() {
             let Some(track) = place.as_mut().filter(|_| chosen != Some(index)) else { continue };
+            if is_out && scene.is_inside(track.plane.position) {
+                continue;
+            }
+            let apart = track.plane.position.distance(ball.plane.position);
+            let rests = apart >= FAR_BESIDE_MIN_M && track.rests();
+            let beside_for_us = micros(if rests { REST_BESIDE_FOR_S } else { BESIDE_FOR_S });
             let together = (in_frame(track) && in_frame(&ball))
-                || (track.seen == now && now - track.began >= micros(BESIDE_FOR_S));
-            track.other |= together
-                && track.images >= FRAMES_BESIDE
-                && track.plane.position.distance(ball.plane.position) >= BESIDE_MIN_M;
+                || (track.seen == now && ball.agreed - track.began >= beside_for_us);
+            track.other |= together && track.images >= FRAMES_BESIDE && apart >= BESIDE_MIN_M;
         }
     }
 

@@ -56,6 +56,8 @@ pub(super) struct Balls {
     tracks: [Option<Track>; TRACKS_MAX],
     /// Index of the ball among them.
     chosen: Option<usize>,
+    /// Time of the first choice.
+    first: Option<Captured>,
     air: Air,
     kicked: Option<Kicked>,
     contact: Option<kick::Contact>,
@@ -86,7 +88,7 @@ impl Balls {
         for (_, seen) in frame.balls.iter().enumerate().filter(|(index, _)| Some(*index) != ball) {
             self.see_other(frame, seen, around);
         }
-        self.mark_others(frame);
+        self.mark_others(frame, around.scene);
         self.note_absence(frame.at, around);
         self.choose(frame.at, around);
     }
@@ -98,8 +100,9 @@ impl Balls {
         let glimpse = self.glimpse(frame, seen, around.scene);
         let Some(track) = self.chosen.and_then(|index| self.tracks[index].as_mut()) else { return };
         track.note(frame, seen);
-        track.inside |= around.scene.is_inside(seen.position);
+        track.note_inside(around.scene.is_inside(seen.position));
         if matches!(self.air, Air::Flying(..)) {
+            track.agreed = track.seen;
             self.see_flying(&glimpse, around);
             return;
         }

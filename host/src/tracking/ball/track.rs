@@ -33,6 +33,8 @@ const GATE_GROWTH_M_S: f32 = 10.0;
 const GATE_TIME_MAX_S: f32 = 0.15;
 /// Detections nearer to each other are of one tick, µs.
 const TICK_US: Captured = 5_000;
+/// A ball that has moved less than this rests, m: the noise of cameras that disagree.
+const RESTS_WITHIN_M: f32 = 0.05;
 /// Camera frames after which confidence is full.
 const FRAMES_FULL: u16 = 8;
 /// Weight of the newest detection in the quality.
@@ -69,6 +71,8 @@ pub(super) struct Track {
     /// Time of the state.
     pub(super) at: Captured,
     pub(super) seen: Captured,
+    /// Time of the last detection that was no outlier.
+    pub(super) agreed: Captured,
     counted: Captured,
     pub(super) images: u16,
     quality: f32,
@@ -83,8 +87,8 @@ pub(super) struct Track {
     pub(super) camera: u32,
     /// Another ball than ours: it was seen beside ours.
     pub(super) other: bool,
-    /// It has been inside the field's lines.
-    pub(super) inside: bool,
+    /// Its last detection inside the field's lines.
+    pub(super) inside_at: Option<Captured>,
 }
 
 impl Track {
@@ -93,6 +97,7 @@ impl Track {
             plane: Plane::new(glimpse.position, sigma, SPEED_SIGMA_M_S),
             at: glimpse.at,
             seen: glimpse.at,
+            agreed: glimpse.at,
             counted: glimpse.at,
             images: 1,
             quality: seen.confidence,
@@ -103,7 +108,7 @@ impl Track {
             seen_at: glimpse.position,
             camera: glimpse.camera,
             other: false,
-            inside: false,
+            inside_at: None,
         }
     }
 
@@ -147,6 +152,16 @@ impl Track {
         self.quality += (seen.confidence - self.quality) * QUALITY_SHARE;
     }
 
+    /// Whether it lies where it was first seen.
+    pub(super) fn rests(&self) -> bool {
+        self.origin.distance(self.plane.position) <= RESTS_WITHIN_M
+    }
+
+    /// Records whether its last detection was inside the field's lines.
+    pub(super) fn note_inside(&mut self, is_inside: bool) {
+        self.inside_at = if is_inside { Some(self.seen) } else { self.inside_at };
+    }
+
     /// Takes a detection; returns a turn if it is the second that reveals one.
     pub(super) fn see(&mut self, glimpse: &Glimpse, models: &BallModels, sigma: f32) -> Option<Turn> {
         let dt = seconds(glimpse.at - self.at).max(0.0);
@@ -159,6 +174,7 @@ impl Track {
         {
             plane.see(glimpse.position, sigma);
             (self.plane, self.at, self.strange) = (plane, self.at.max(glimpse.at), None);
+            self.agreed = self.agreed.max(glimpse.at);
             return None;
         }
         let Some(first) = self.strange else {
@@ -177,6 +193,7 @@ impl Track {
         let turn = self.turn(&first, glimpse, after);
         let speed_sigma = TURN_SIGMA_M_S + 2.0 * sigma / seconds(between);
         self.put(glimpse.at, Plane::sent_off(glimpse.position, after, sigma, speed_sigma));
+        self.agreed = self.agreed.max(glimpse.at);
         Some(turn)
     }
 

@@ -34,7 +34,7 @@ pub(crate) use identity::tests::identity as identity_for_tests;
 pub use judge::{Held, JudgementLine, judge};
 pub use paper::paper;
 pub use plan::{EvaluationCell, EvaluationPlan, Planned};
-pub use results::{Results, write_effects};
+pub use results::{Results, effect_files};
 pub use row::TrialRow;
 #[cfg(test)]
 pub(crate) use row::tests::row as row_for_tests;

@@ -11,8 +11,8 @@
 //! | `cases.csv` | uses and outcomes of each case |
 //! | `run.json` | identity of the evaluation: program, seed, numbers, cases, settings, world |
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 
 use serde::Serialize;
 
@@ -82,13 +82,13 @@ impl Results {
         })
     }
 
-    /// Writes every file into an existing directory.
-    pub fn write(&self, directory: &Path) -> Result<(), EvaluationError> {
+    /// Every file of the results: name and content.
+    pub fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>, EvaluationError> {
         let all: Vec<_> = self.with_paper.iter().chain(&self.between_approaches).collect();
         let paper = self.with_paper.len();
         let flat: Vec<_> = all.iter().enumerate().map(|(i, comparison)| comparison.flat(i < paper)).collect();
         let run = Run { identity: &self.identity, trials: self.rows.len(), csv_hash: &self.hash };
-        let files = [
+        contents([
             ("trials.csv", to_csv(&self.rows).map_err(Into::into)),
             ("tables.json", json(&self.tables)),
             ("tables.csv", as_csv(&self.tables)),
@@ -98,35 +98,34 @@ impl Results {
             ("judge.json", json(&self.lines)),
             ("cases.csv", uses_to_csv(&self.uses).map_err(Into::into)),
             ("run.json", json(&run)),
-        ];
-        for (name, bytes) in files {
-            let file: PathBuf = directory.join(name);
-            let written = bytes.and_then(|bytes| fs::write(&file, bytes));
-            written.map_err(EvaluationError::file(&file))?;
-        }
-        Ok(())
+        ])
     }
 }
 
-/// Writes the effects of an ablation into an existing directory.
-pub fn write_effects(effects: &[Effect], directory: &Path) -> Result<(), EvaluationError> {
-    for (name, bytes) in [("ablations.json", json(&effects)), ("ablations.csv", as_csv(effects))] {
-        let file = directory.join(name);
-        let written = bytes.and_then(|bytes| fs::write(&file, bytes));
-        written.map_err(EvaluationError::file(&file))?;
-    }
-    Ok(())
+/// The files of an ablation's effects: name and content.
+pub fn effect_files(effects: &[Effect]) -> Result<Vec<(&'static str, Vec<u8>)>, EvaluationError> {
+    contents([("ablations.json", json(&effects)), ("ablations.csv", as_csv(effects))])
+}
+
+fn contents<const N: usize>(
+    files: [(&'static str, io::Result<Vec<u8>>); N],
+) -> Result<Vec<(&'static str, Vec<u8>)>, EvaluationError> {
+    let files = files.into_iter().map(|(name, bytes)| {
+        let bytes = bytes.map_err(EvaluationError::file(Path::new(name)))?;
+        Ok((name, bytes))
+    });
+    files.collect()
 }
 
 /// Indented JSON: one line for each element of a list would be too long to read.
-fn json(value: &impl Serialize) -> std::io::Result<Vec<u8>> {
+fn json(value: &impl Serialize) -> io::Result<Vec<u8>> {
     let mut bytes = serde_json::to_vec_pretty(value)?;
     bytes.push(b'\n');
     Ok(bytes)
 }
 
 /// A row of CSV for each element, with the columns' names in the first line.
-fn as_csv<T: Serialize>(rows: &[T]) -> std::io::Result<Vec<u8>> {
+fn as_csv<T: Serialize>(rows: &[T]) -> io::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.serialize(row)?;

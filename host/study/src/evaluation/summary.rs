@@ -134,8 +134,10 @@ fn table_text(results: &Results, number: u8, sample: Extent, rows: &[&TableRow])
             table.rows.extend(differences(&comparisons, &columns));
         }
     }
+    // The paper's sixth table, with its number of trials and with as many as were played.
+    let sample = if sample == Extent::Large { ", all of them" } else { "" };
     format!(
-        "Table {number}: {title}; {trials} trials a row, world {world}, in brackets the paper's\n{}\n",
+        "Table {number}{sample}: {title}; {trials} trials a row, world {world}, in brackets the paper's\n{}\n",
         table.text()
     )
 }

@@ -3,6 +3,7 @@
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use figures::{Cell, Row, Table, row};
 
@@ -25,6 +26,31 @@ pub fn markdown(outcomes: &[Outcome], effects: &[Effect], ours: &Passes) -> Stri
     text.extend(last.iter().map(below));
     text.trim_start().to_owned()
 }
+
+/// A line for each pair of teams, and how far the number of matches carries.
+pub fn summary(outcomes: &[Outcome]) -> String {
+    let mut text = String::new();
+    for o in outcomes {
+        let ([won, drawn, lost], goals) = (o.won_drawn_lost, score(o.goals));
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{} against {}: {won} won, {drawn} drawn, {lost} lost, goals {goals}",
+            o.own, o.opponent
+        );
+    }
+    let fewest = outcomes.iter().map(|o| o.matches).min().unwrap_or_default();
+    if fewest < MATCHES_TO_JUDGE {
+        let _ = writeln!(
+            text,
+            "{fewest} matches of a pair are few: intervals say how little is known; judge by {MATCHES_TO_JUDGE} or more (--matches)"
+        );
+    }
+    text
+}
+
+/// Matches of a pair by which two programs are judged: with fewer, half a goal a match is chance.
+const MATCHES_TO_JUDGE: u32 = 20;
 
 /// A table below other text.
 fn below(table: &Table) -> String {

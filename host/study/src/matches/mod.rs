@@ -19,9 +19,8 @@ mod paper;
 mod passes;
 mod plan;
 mod plot;
+mod refusals;
 mod row;
-
-use std::sync::{Arc, Mutex, PoisonError};
 
 use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::NativeBackend;
@@ -33,7 +32,7 @@ use serde::{Deserialize, Serialize};
 pub use calibration::calibration_plot;
 pub use case_table::case_table;
 pub use comparison::{MatchComparison, check_same_matches, compare_matches};
-pub use description::{AttackRow, attack_table, comparison_table, markdown};
+pub use description::{AttackRow, attack_table, comparison_table, markdown, summary};
 pub use effect::{Change, Effect, effects};
 pub use match_team::MatchTeam;
 pub use outcome::{Estimate, Outcome, our_passes, outcomes};
@@ -41,6 +40,7 @@ pub use paper::{PAPER, PAPER_PASSES, PaperGame, PaperPasses};
 pub use passes::{Kicked, Passes, Share, Tenth};
 pub use plan::{MatchPlan, Pairing, Planned};
 pub use plot::plot;
+pub use refusals::{Refusal, RefusalFile, RefusedAnswers};
 pub use row::{MatchRow, MatchSide};
 
 use crate::store::{Difference, EvaluationError, Experiment, StoredExperiment};
@@ -60,12 +60,9 @@ pub struct Matches {
     pub program: String,
     /// Names of the cases.
     pub names: CaseNames,
-    /// Warnings about answers that were refused, of the matches played by this process.
-    pub refusals: Refusals,
+    /// Where answers of a strategy that are refused are kept.
+    pub refusals: Option<RefusalFile>,
 }
-
-/// Warnings about a strategy's answers that were refused: match and warning.
-pub type Refusals = Arc<Mutex<Vec<(usize, String)>>>;
 
 /// Identity of the evaluation of a file of matches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -144,14 +141,17 @@ impl Experiment for Matches {
     fn play(&self, planned: &Planned) -> Result<MatchRow, EvaluationError> {
         let report = play(&self.config(planned)?, &mut NativeBackend::new(self.base), &mut NoWatcher)
             .map_err(|error| EvaluationError::Match { number: planned.number, error })?;
-        let metrics = [&report.metrics.blue, &report.metrics.yellow];
-        for strategy in metrics.into_iter().filter_map(|metrics| metrics.strategy.as_ref()) {
-            let Some(warning) = strategy.warning() else { continue };
-            if strategy.never_played() {
+        let number = planned.number;
+        for (is_blue, metrics) in [(true, &report.metrics.blue), (false, &report.metrics.yellow)] {
+            let Some(answers) = &metrics.strategy else { continue };
+            let Some(warning) = answers.warning() else { continue };
+            if answers.never_played() {
                 let error = GameError::StrategyFailed(warning);
-                return Err(EvaluationError::Match { number: planned.number, error });
+                return Err(EvaluationError::Match { number, error });
             }
-            self.refusals.lock().unwrap_or_else(PoisonError::into_inner).push((planned.number, warning));
+            if let Some(file) = &self.refusals {
+                file.append(&Refusal { number, is_blue, answers: answers.clone() })?;
+            }
         }
         Ok(MatchRow::new(planned, &report))
     }

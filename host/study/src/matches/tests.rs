@@ -3,6 +3,7 @@
 
 use std::fs;
 
+use arena::game::StrategyReport;
 use hil_sim::small_size::worlds::{WorldChoice, WorldPlan};
 use host::strategy::Team;
 use host::strategy::counters::CapCounters;
@@ -31,7 +32,7 @@ fn matches(plan: MatchPlan) -> Matches {
         settings: RetrievalSettings::default(),
         program: "test".to_owned(),
         names: CaseNames::default(),
-        refusals: Refusals::default(),
+        refusals: None,
     }
 }
 
@@ -285,4 +286,33 @@ fn a_host_retrieves_from_the_library_that_its_robots_have() {
     let retrieved: Vec<_> =
         played.iter().map(|row| arena::ledger::CaseTable::read(&row.sides[0].cases).retrieved).collect();
     assert!(retrieved.iter().sum::<u32>() >= 4, "{retrieved:?}");
+}
+
+#[test]
+fn refused_answers_outlive_an_interrupt_and_are_summed_by_match() {
+    let directory = Directory::new("matches-refusals");
+    let matches = directory.file(Shard::WHOLE);
+    let opened = || RefusalFile::beside(&matches).open(&matches).unwrap();
+    let refusal = |number, refused: u64, reason: &str| {
+        let refusal = Some(reason.to_owned());
+        Refusal { number, is_blue: true, answers: StrategyReport { used: 1, refused, refusal } }
+    };
+    let file = opened();
+    assert_eq!(RefusedAnswers::of(&file.read().unwrap()), RefusedAnswers::default());
+    file.append(&refusal(3, 2, "unknown key")).unwrap();
+    file.append(&refusal(1, 5, "not JSON")).unwrap();
+    // Interrupted before the match was stored: it is played again.
+    fs::write(&matches, "").unwrap();
+    let path = matches.with_file_name("refusals-1-of-1.jsonl");
+    let torn = [fs::read(&path).unwrap(), b"{\"number\":4,".to_vec()].concat();
+    fs::write(&path, torn).unwrap();
+    let file = opened();
+    file.append(&refusal(1, 6, "not JSON")).unwrap();
+    let all = file.read().unwrap();
+    assert_eq!(all.iter().map(|refusal| refusal.number).collect::<Vec<_>>(), [1, 3]);
+    let expected = RefusedAnswers { matches: 2, refused: 8, refusal: Some("not JSON".to_owned()) };
+    assert_eq!(RefusedAnswers::of(&all), expected);
+    // Without the matches they are of another run.
+    fs::remove_file(&matches).unwrap();
+    assert_eq!(opened().read().unwrap(), []);
 }

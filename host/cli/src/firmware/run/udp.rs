@@ -6,7 +6,6 @@
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Stdio};
 use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -21,7 +20,7 @@ use ssl::net::addresses;
 use virtual_robot::{AccessPoint, Bodies};
 
 use super::super::failure::FirmwareError;
-use super::{CHECK_EVERY, RunArgs, build, check, emulator_log, in_option, qemu_arguments};
+use super::{CHECK_EVERY, Emulator, RunArgs, build, check, in_option, qemu_arguments};
 use crate::Failure;
 use crate::destination::{self, FileKind};
 use crate::output::note;
@@ -44,6 +43,7 @@ pub(super) fn run(address: SocketAddr, args: &RunArgs) -> Result<(), Failure> {
     let simulator = args.simulator.as_deref().map(|text| simulator(text, team)).transpose()?;
     let qemu = ensure_qemu(Install::ForUser)?;
     let image = build(Program::Udp)?;
+    let stopped = stopped_by_hand();
     let socket = |what: String| move |error| FirmwareError::Socket(what, error);
     let point = AccessPoint::open(address).map_err(socket(format!("robots' radio at {address}")))?;
     let ids: Vec<_> = robots.iter().map(|(_, who)| who.robot).collect();
@@ -68,13 +68,11 @@ pub(super) fn run(address: SocketAddr, args: &RunArgs) -> Result<(), Failure> {
         let journal = args.journal.as_deref().map(|directory| prepare(directory, who)).transpose()?;
         let mut arguments = qemu_arguments(&image, Some(file), "null");
         arguments.extend(network_arguments(&network, who, journal.as_deref()));
-        let mut command = hil_sim::emulator_command(qemu.as_ref());
-        let mut child = command.args(arguments).stdin(Stdio::null()).stderr(Stdio::piped()).spawn()?;
-        emulator_log::follow(&mut child, &format!("robot {}: ", who.robot));
-        team.0.push((who.robot.number(), child));
+        let emulator = Emulator::start(&qemu, &arguments, &format!("robot {}: ", who.robot))?;
+        team.0.push((who.robot.number(), emulator));
     }
     let end = args.duration.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
-    while !stopped_by_hand().load(Ordering::Relaxed) && end.is_none_or(|end| Instant::now() < end) {
+    while !stopped.load(Ordering::Relaxed) && end.is_none_or(|end| Instant::now() < end) {
         team.look()?;
         thread::sleep(CHECK_EVERY);
     }
@@ -83,29 +81,19 @@ pub(super) fn run(address: SocketAddr, args: &RunArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The emulators; killed when this is dropped.
-struct Team(Vec<(u8, Child)>);
+/// The emulators, each with its robot's number.
+struct Team(Vec<(u8, Emulator)>);
 
 impl Team {
     /// An error as soon as one has ended.
     fn look(&mut self) -> Result<(), Failure> {
-        for (robot, child) in &mut self.0 {
-            if let Some(status) = child.try_wait()? {
+        for (robot, emulator) in &mut self.0 {
+            if let Some(status) = emulator.0.try_wait()? {
                 let what = format!("the emulator of robot {robot} ended ({status}); its output is above");
                 return Err(FirmwareError::Team(what).into());
             }
         }
         Ok(())
-    }
-}
-
-impl Drop for Team {
-    fn drop(&mut self) {
-        for (_, child) in &mut self.0 {
-            // It may have ended by itself; either way nothing remains to be done.
-            let _ = child.kill();
-            let _ = child.wait();
-        }
     }
 }
 
