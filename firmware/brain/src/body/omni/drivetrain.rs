@@ -103,8 +103,8 @@ impl Drivetrain {
         self.spent = instructions;
     }
 
-    /// Whether the next plan needs more time than the last ones had: where no path was found in the last step,
-    /// every second step, and every step while the robot stands.
+    /// Whether the next plan needs more time than the last ones had: where no path was found in the last
+    /// step, every second step, and every step while the robot stands.
     pub fn needs_time(&self) -> bool {
         self.path_age % 2 == 1 || self.path_age > 0 && self.velocity.norm() < THERE_SPEED
     }
