@@ -92,8 +92,8 @@ fn follow(computers: [Computer; 2], from: f64) -> Followed {
         let ball = world.ball.is_some_and(|b| b.position.distance(Point::new(x as f32, y as f32)) < 0.1);
         (balls, all) = (balls + u32::from(ball), all + 1);
     }
-    let share = |of: u32, all: u32| f64::from(of) / f64::from(all);
-    let (within, balls) = (share(within, robots), share(balls, all));
+    let within = f64::from(within) / f64::from(robots);
+    let balls = f64::from(balls) / f64::from(all);
     Followed { worst, within, least, balls, cameras: tracker.cameras(end).collect() }
 }
 

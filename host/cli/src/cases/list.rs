@@ -33,8 +33,8 @@ pub(super) fn run(args: &ListArgs) -> Result<ExitCode, Failure> {
     let written = if args.json {
         write_json(&mut output, &rows)
     } else {
-        let authored = |row: &&Row<'_>| args.all || row.symmetry == Symmetry::Identity.label();
-        let shown: Vec<_> = rows.iter().filter(authored).collect();
+        let authored = Symmetry::Identity.label();
+        let shown: Vec<_> = rows.iter().filter(|row| args.all || row.symmetry == authored).collect();
         write_table(&mut output, &shown).and_then(|()| match rows.len() - shown.len() {
             0 => Ok(()),
             copies => writeln!(output, "{} cases; --all lists their {copies} mirror images too", shown.len()),

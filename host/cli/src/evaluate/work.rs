@@ -18,6 +18,7 @@ use crate::Failure;
 use crate::args::VERSION;
 use crate::destination::{self, DestinationError, FileKind};
 use crate::output;
+use crate::picture;
 use crate::progress;
 use crate::setup::SetupArgs;
 use crate::stop::stopped_by_hand;
@@ -218,8 +219,9 @@ const TRIALS_TO_JUDGE: u32 = 400;
 /// Writes files of results into an existing directory.
 pub(super) fn write_all(directory: &Path, files: Vec<(&str, Vec<u8>)>) -> Result<(), Failure> {
     files.into_iter().try_for_each(|(name, bytes)| {
-        let kind = if name.ends_with(".csv") { FileKind::Csv } else { FileKind::Json };
-        write(&directory.join(name), kind, &bytes)
+        let file = directory.join(name);
+        let kind = if picture::has_extension(&file, "csv") { FileKind::Csv } else { FileKind::Json };
+        write(&file, kind, &bytes)
     })
 }
 

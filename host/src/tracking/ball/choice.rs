@@ -88,8 +88,9 @@ impl Balls {
         }
         // A new track; without room it replaces the one unseen the longest, a known ball last.
         let room = (0..self.tracks.len()).filter(|index| Some(*index) != chosen);
-        let rank = |index: &usize| self.tracks[*index].map(|track| (track.other, track.seen));
-        if let Some(index) = room.min_by_key(rank) {
+        if let Some(index) =
+            room.min_by_key(|index| self.tracks[*index].map(|track| (track.other, track.seen)))
+        {
             let mut track = Track::new(&glimpse, seen, around.sigma);
             track.other = self.is_other(position, at);
             track.note_inside(around.scene.is_inside(position));
@@ -139,7 +140,6 @@ impl Balls {
         let last = current.filter(|_| !is_first).map(|track| track.plane.position);
         let last = last.or(self.gone.map(|gone| gone.place)).unwrap_or_default();
         let outside = current.is_some_and(|track| !playable(track));
-        let rank = |track: &Track| (track.other, !playable(track), last.distance(track.plane.position));
         let mut best: Option<(usize, (bool, bool, f32))> = None;
         for (index, track) in self.tracks.iter().enumerate() {
             let Some(track) = track.as_ref().filter(|_| self.chosen != Some(index)) else { continue };
@@ -152,15 +152,17 @@ impl Balls {
                 let is_inside = track.inside_at == Some(track.seen);
                 is_inside && !track.other && track.rests() && track.images >= FRAMES_PUT_BACK
             } else if settled {
-                current.is_some_and(|current| rank(track) < rank(current))
+                current
+                    .is_some_and(|current| track.rank(last, around.scene) < current.rank(last, around.scene))
             } else {
                 playable(track) && (track.inside_at.is_some() || outside)
             };
             if !steady || !can_be_it {
                 continue;
             }
-            if best.is_none_or(|(_, least)| rank(track) < least) {
-                best = Some((index, rank(track)));
+            let rank = track.rank(last, around.scene);
+            if best.is_none_or(|(_, least)| rank < least) {
+                best = Some((index, rank));
             }
         }
         if let Some((index, _)) = best {

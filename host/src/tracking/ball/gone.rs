@@ -75,8 +75,8 @@ pub(super) type OtherPlaces = [Option<(Point<Field>, Captured)>; PLACES_MAX];
 impl Balls {
     /// Records since when and where the ball is not seen, and which robot covers it.
     pub(super) fn note_absence(&mut self, now: Captured, around: Around<'_>) {
-        let until = |gone: &Gone| gone.replaced_until.unwrap_or(gone.seen + micros(COVERED_MAX_S));
-        self.gone = self.gone.filter(|gone| now <= until(gone));
+        self.gone =
+            self.gone.filter(|gone| now <= gone.replaced_until.unwrap_or(gone.seen + micros(COVERED_MAX_S)));
         if self.is_doubtful() {
             return;
         }

@@ -10,6 +10,7 @@ use motion::trajectory::Motion;
 
 use super::super::filter::{Freedom, Plane};
 use super::super::robots::seconds;
+use super::super::scene::Scene;
 use super::super::seen::{BallSeen, Captured, Frame};
 use crate::world::BallModels;
 
@@ -150,6 +151,13 @@ impl Track {
             self.images = self.images.saturating_add(1);
         }
         self.quality += (seen.confidence - self.quality) * QUALITY_SHARE;
+    }
+
+    /// Order in which blobs become the ball, the least first: other balls last, those behind the walls before
+    /// them, far from `last` after near.
+    pub(super) fn rank(&self, last: Point<Field>, scene: &Scene) -> (bool, bool, f32) {
+        let place = self.plane.position;
+        (self.other, !scene.is_playable(place), last.distance(place))
     }
 
     /// Whether it lies where it was first seen.

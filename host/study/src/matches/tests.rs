@@ -2,6 +2,7 @@
 //! right.
 
 use std::fs;
+use std::path::Path;
 
 use arena::game::StrategyReport;
 use hil_sim::small_size::worlds::{WorldChoice, WorldPlan};
@@ -288,16 +289,20 @@ fn a_host_retrieves_from_the_library_that_its_robots_have() {
     assert!(retrieved.iter().sum::<u32>() >= 4, "{retrieved:?}");
 }
 
+fn opened(matches: &Path) -> RefusalFile {
+    RefusalFile::beside(matches).open(matches).unwrap()
+}
+
+fn refusal(number: usize, refused: u64, reason: &str) -> Refusal {
+    let refusal = Some(reason.to_owned());
+    Refusal { number, is_blue: true, answers: StrategyReport { used: 1, refused, refusal } }
+}
+
 #[test]
 fn refused_answers_outlive_an_interrupt_and_are_summed_by_match() {
     let directory = Directory::new("matches-refusals");
     let matches = directory.file(Shard::WHOLE);
-    let opened = || RefusalFile::beside(&matches).open(&matches).unwrap();
-    let refusal = |number, refused: u64, reason: &str| {
-        let refusal = Some(reason.to_owned());
-        Refusal { number, is_blue: true, answers: StrategyReport { used: 1, refused, refusal } }
-    };
-    let file = opened();
+    let file = opened(&matches);
     assert_eq!(RefusedAnswers::of(&file.read().unwrap()), RefusedAnswers::default());
     file.append(&refusal(3, 2, "unknown key")).unwrap();
     file.append(&refusal(1, 5, "not JSON")).unwrap();
@@ -306,7 +311,7 @@ fn refused_answers_outlive_an_interrupt_and_are_summed_by_match() {
     let path = matches.with_file_name("refusals-1-of-1.jsonl");
     let torn = [fs::read(&path).unwrap(), b"{\"number\":4,".to_vec()].concat();
     fs::write(&path, torn).unwrap();
-    let file = opened();
+    let file = opened(&matches);
     file.append(&refusal(1, 6, "not JSON")).unwrap();
     let all = file.read().unwrap();
     assert_eq!(all.iter().map(|refusal| refusal.number).collect::<Vec<_>>(), [1, 3]);
@@ -314,5 +319,5 @@ fn refused_answers_outlive_an_interrupt_and_are_summed_by_match() {
     assert_eq!(RefusedAnswers::of(&all), expected);
     // Without the matches they are of another run.
     fs::remove_file(&matches).unwrap();
-    assert_eq!(opened().read().unwrap(), []);
+    assert_eq!(opened(&matches).read().unwrap(), []);
 }
