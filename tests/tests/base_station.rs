@@ -79,8 +79,8 @@ impl Player {
         let config = BrainConfig { epoch: 7, ..BrainConfig::hosted(id, TEAM, League::DivisionB) };
         let brain = Station::with_keys(Instant(0), &config, case_library::division_b(), KEY.of_robot(id));
         let chip = air.chip();
-        let wires = (chip.spi(), chip.chip_enable(), chip.pause());
-        let robot = Robot::start(Instant(0), CHANNEL, id, wires).expect("the model");
+        let robot = Robot::start(Instant(0), CHANNEL, id, chip.spi(), chip.chip_enable(), chip.pause());
+        let robot = robot.expect("the model");
         let radio = Served::new(robot, chip);
         Self { id, brain, radio, guard: Guard::new(id, 7, 0), frames: 0, believed: 0, obeyed: 0 }
     }

@@ -33,8 +33,12 @@ fn the_list_is_one_json_list_of_every_stored_case() {
 }
 
 #[test]
-fn the_table_has_a_line_for_every_stored_case() {
-    let run = cases("list", &worked_example("table"), &[], "");
+fn the_table_has_a_line_for_every_authored_case_and_with_all_for_every_stored_one() {
+    let authored = cases("list", &worked_example("table"), &[], "");
+    let rows: Vec<String> = authored.lines().into_iter().map(str::to_owned).collect();
+    let of_case = rows.iter().filter(|row| row.contains("center/pass-around")).count();
+    assert!(of_case == 1 && rows.iter().any(|row| row.contains("--all")), "{rows:?}");
+    let run = cases("list", &worked_example("table"), &["--all"], "");
     let arguments: Vec<Vec<&str>> =
         run.lines().into_iter().map(|line| line.split_whitespace().collect()).collect();
     assert_eq!(arguments[0], ["league", "id", "case", "symmetry", "defending", "teammates", "opponents"]);
