@@ -145,7 +145,8 @@ impl<F: Copy> Search<'_, F> {
         if !corners.is_empty() && self.first_hit(&start, second).is_none() {
             corners.pop();
         }
-        let via = *corners.last()?;
+        // A corner that is reached, from where it does not go on, is no way.
+        let via = *corners.last().filter(|via| via.distance(start.at) > REACHED_M)?;
         let mut node = start;
         for end in corners.iter().rev().copied().chain([self.goal]) {
             if self.scene.affords_a_piece() && self.first_hit(&node, end).is_some() {
@@ -452,6 +453,8 @@ fn around<F: Copy>(
     center + (first + middle) * (radius / opening)
 }
 
+/// A corner this near is reached, m: the skin that routes keep.
+const REACHED_M: f32 = 0.02;
 /// A start and a goal that moved no farther are the same, m.
 const SAME_PLACE_M: f32 = 0.1;
 /// Most corners of a route that is kept.

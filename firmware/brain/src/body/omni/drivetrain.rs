@@ -209,9 +209,9 @@ impl Drivetrain {
     fn effort(&self, belief: &Belief, drive: &Drive) -> u32 {
         let stopped = is_moved_by_the_rules(belief.game.phase);
         let skill = match belief.game.phase {
-            Phase::BallPlacement(Side::Ours) => EFFORT_OF_TAKING,
+            Phase::BallPlacement(Side::Ours) => EFFORT_OF_SKILL,
             _ if stopped && belief.game.rule_role != RuleRole::Kicker => 0,
-            _ => EFFORT_OF_TAKING,
+            _ => EFFORT_OF_SKILL,
         };
         EFFORT.saturating_sub(skill + drive.effort + self.spent)
     }
@@ -307,14 +307,14 @@ const BOTH_BRAKE: f32 = 2.0;
 const PATH_AGE_MAX: u8 = 20;
 /// Number of steps for which a robot without a free path keeps its velocity, where it has no time to plan.
 const COASTS_MAX: u8 = 2;
-/// Instructions that a step leaves for inputs, a search of its skill and planning a path: 36,000
-/// (docs/architecture.md §9) less what every step takes, a message sent, and what estimates err by. By 180 s
-/// of six images: the worst of 108,000 steps took 34,285 instructions, 999 of 1,000 at most 33,300.
-const EFFORT: u32 = 18_000;
+/// Instructions that a step leaves for inputs, a skill and planning a path: 36,000 (docs/architecture.md §9)
+/// less what every step takes, a message sent, and what estimates err by. By 60 s of six images the worst of
+/// 36,000 steps took 35,196 instructions.
+const EFFORT: u32 = 21_000;
 /// Instructions that a plan among obstacles has besides the least, for a search.
 const EFFORT_OF_SEARCH: u32 = 1_500;
 /// Instructions of a skill, such as placing the ball or a kick: it also plans a path behind the ball.
-const EFFORT_OF_TAKING: u32 = 1_000;
+const EFFORT_OF_SKILL: u32 = 4_000;
 
 /// Whether the allowed positions of a robot change in this phase without a new directive: with the ball, or
 /// with the phase itself.
