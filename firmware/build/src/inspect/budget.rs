@@ -85,7 +85,7 @@ pub const STACK_BUDGET: u32 = 14_750;
 
 /// Guest instructions that any brain step may take (docs/architecture.md §9), the tasks around the brain
 /// included, whatever robot the image is built for and however long it plays.
-pub const STEP_BUDGET: u32 = 36_000;
+pub const STEP_BUDGET: u32 = 40_000;
 
 /// Number of symbols named where a budget is exceeded.
 const LARGEST: usize = 12;

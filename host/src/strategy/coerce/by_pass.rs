@@ -56,7 +56,7 @@ impl PassValue for ByPassLocation<'_> {
         places: &mut dyn Iterator<Item = Point<Attack>>,
         take: &mut dyn FnMut(Point<Attack>, Worth),
     ) {
-        let scene = PassScene::of(view, self.kicks, origin.from, Some(origin.kicker), receiver);
+        let scene = PassScene::of(view, self.kicks, origin.from, Some(origin.kicker), receiver).at_kick();
         for at in places {
             let rating = scene.rate(at);
             let (receive, goal) = (rating.receive(), rating.goal());

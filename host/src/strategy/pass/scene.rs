@@ -194,6 +194,13 @@ impl<'k> PassScene<'k> {
         given::time_to_react(ball_time - driving, c)
     }
 
+    /// The same at the moment of the kick: with opponents where the view shows them, and the usual chip.
+    pub fn at_kick(mut self) -> Self {
+        self.opponents.iter_mut().for_each(|opponent| opponent.head_start = 0.0);
+        (self.chip_prior, self.covered) = (self.kicks.constants().chip_prior, 0.0);
+        self
+    }
+
     /// The same, where having the ball is worth something without a shot too.
     pub fn keeping(self) -> Self {
         Self { keeps: true, ..self }

@@ -1,6 +1,6 @@
 //! `robot`: the start of the robot's board, and what it has.
 //!
-//! A step of the brain of 36,000 instructions, its budget, takes half a millisecond here, where no more than
+//! A step of the brain of 40,000 instructions, its budget, takes half a millisecond here, where no more than
 //! two cycles go to one. A control step may be late by this time.
 
 use stm32_kit::lines;

@@ -1,6 +1,6 @@
 //! `robot`: the start of the robot's board, and what it has. The program names its radio.
 //!
-//! A step of the brain of 36,000 instructions, its budget, takes a fifth of a millisecond here. A control
+//! A step of the brain of 40,000 instructions, its budget, takes a fifth of a millisecond here. A control
 //! step may be late by this time.
 
 /// A robot's board with an STM32H743.

@@ -37,7 +37,7 @@ fn settings(shuffle: bool) -> LearnSettings {
 }
 
 /// Short beginnings, so that a test takes seconds.
-const SIZES: Sizes = Sizes { beginning_ms: 40_000, explore: 6, look: 6, validate: 6, proposals: 2 };
+const SIZES: Sizes = Sizes { beginning_ms: 80_000, explore: 6, look: 6, validate: 6, proposals: 2 };
 
 fn candidates(current: &Variant, explored: &Played, edits: &[(&str, Change)]) -> Vec<Candidate> {
     let candidate = |(case, change): &(&str, Change)| {
