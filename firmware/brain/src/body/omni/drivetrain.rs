@@ -308,8 +308,9 @@ const PATH_AGE_MAX: u8 = 20;
 /// Number of steps for which a robot without a free path keeps its velocity, where it has no time to plan.
 const COASTS_MAX: u8 = 2;
 /// Instructions that a step leaves for inputs, a skill and planning a path: 40,000 (docs/architecture.md §9)
-/// less what every step takes, a message sent, and what estimates err by. By 60 s of six images the worst step
-/// took 37,693. With 19,000, worst 35,747, 14 of 612 keepers come late from behind their goal (a test of `brain`).
+/// less what every step takes, a message sent, and what estimates err by. By 60 s of six images the worst
+/// step took 37,693. With 19,000, worst 35,747, 14 of 612 keepers come late from behind their goal (a test of
+/// `brain`).
 const EFFORT: u32 = 21_000;
 /// Instructions that a plan among obstacles has besides the least, for a search.
 const EFFORT_OF_SEARCH: u32 = 1_500;
