@@ -78,10 +78,7 @@ impl Pair {
         let team = TeamId::of(Colour::Blue);
         let its = Metered::new(qemu, &meter);
         let mut mixed = ByTeam { team, its, others: NativeBackend::new(base) };
-        // A game is large: one after the other goes over the stack.
-        let mut games = Vec::with_capacity(2);
-        games.push(Game::new(&config, &mut native)?);
-        games.push(Game::new(&config, &mut mixed)?);
+        let games = vec![Game::new(&config, &mut native)?, Game::new(&config, &mut mixed)?];
         Ok(Self { games, meter, ticks: (seconds * 100.0) as u32 })
     }
 

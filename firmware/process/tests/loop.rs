@@ -74,7 +74,9 @@ fn random_datagrams_are_survived_and_counted() {
     }
     assert!(robot.unreadable() > 10_000);
     let refused: u32 = robot.station().link().refused().iter().sum();
-    assert_eq!(refused, 20_000);
+    // What no step has time for stays unopened.
+    assert!(refused > 500);
+    assert_eq!(refused + robot.station().brain().unopened(), 20_000);
 }
 
 #[test]

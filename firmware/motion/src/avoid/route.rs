@@ -106,19 +106,16 @@ impl<F: Copy> Route<F> {
         }
         corners.clear();
         let goes_on = *checks > 0 && began.distance(from) < SAME_PLACE_M;
-        match search.nodes.first_mut().filter(|_| goes_on) {
-            Some(first) => {
-                first.at = from;
-                search.checks = *checks;
-            }
-            None => {
-                search.nodes.clear();
-                *search.turns = None;
-                // The first of many.
-                let _ = search.nodes.push(start);
-                search.checks = CHECKS_MAX;
-                (*began, *aimed) = (from, goal);
-            }
+        if goes_on && let Some(first) = search.nodes.first_mut() {
+            first.at = from;
+            search.checks = *checks;
+        } else {
+            search.nodes.clear();
+            *search.turns = None;
+            // The first of many.
+            let _ = search.nodes.push(start);
+            search.checks = CHECKS_MAX;
+            (*began, *aimed) = (from, goal);
         }
         let found = search.run();
         let remains = search.turns.is_some() || search.cheapest().is_some();
@@ -180,15 +177,14 @@ impl<F: Copy> Search<'_, F> {
             return Some(number);
         }
         while self.may_test() {
-            let (number, mut turns) = match self.turns.take() {
-                Some(cut_short) => cut_short,
-                None => {
-                    let (number, node) = self.cheapest()?;
-                    self.nodes.get_mut(number)?.estimate = f32::INFINITY;
-                    let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
-                    // Obstacles before a corner are avoided as well; each obstacle once on each side.
-                    (number, Turns::new(hit, self.goal))
-                }
+            let (number, mut turns) = if let Some(cut_short) = self.turns.take() {
+                cut_short
+            } else {
+                let (number, node) = self.cheapest()?;
+                self.nodes.get_mut(number)?.estimate = f32::INFINITY;
+                let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
+                // Obstacles before a corner are avoided as well; each obstacle once on each side.
+                (number, Turns::new(hit, self.goal))
             };
             let node = *self.nodes.get(number)?;
             while let Some(Turn { item: hit, side, to }) = turns.next() {

@@ -80,7 +80,7 @@ impl Coach {
             let first = self.challenger(plan, at, self.roles.ball_player);
             self.roles.ball_player = first.map(|robot| robot.id);
             if let Some(robot) = first {
-                self.order_challenge(plan, ball, carrier, (robot, at, false));
+                Self::order_challenge(plan, ball, carrier, (robot, at, false));
                 let ahead = (ball.position - robot.position).unit().unwrap_or_default();
                 let behind = threat::legal(
                     view,
@@ -99,7 +99,7 @@ impl Coach {
                 });
                 self.open_play.rated.second = second.map(|robot| robot.id);
                 if let Some(robot) = second {
-                    self.order_challenge(plan, ball, carrier, (robot, behind, true));
+                    Self::order_challenge(plan, ball, carrier, (robot, behind, true));
                 }
             }
         }
@@ -131,7 +131,6 @@ impl Coach {
     /// Orders a challenger to its place, or, near the ball, to take that and clear it; `blocked`: another one
     /// stands in the way of the carrier's shot.
     fn order_challenge(
-        &self,
         plan: &mut Plan<'_>,
         ball: &ViewBall,
         carrier: &ViewRobot,
