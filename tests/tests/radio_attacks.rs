@@ -350,7 +350,8 @@ fn a_stolen_robots_keys_control_no_other_robot() {
 fn halt_is_obeyed_in_time_under_a_flood_at_the_radios_full_rate() {
     // Commands to others and genuine beacons delay HALT by no step. Forgeries in the host's name come before
     // each of its frames: the robot stops as it does without a host (docs/firmware.md).
-    let floods: [(&str, fn(u64) -> Vec<Packet>, u64, u64); 3] = [
+    type Flood = fn(u64) -> Vec<Packet>;
+    let floods: [(&str, Flood, u64, u64); 3] = [
         ("elsewhere", commands_to_others, 20, 620),
         ("teammates", teammates_handshakes, 20, 620),
         ("forged", forged_commands, 120, 700),

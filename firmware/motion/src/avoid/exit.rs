@@ -202,7 +202,10 @@ impl<F: Copy> Scene<'_, F> {
     fn add_exits(&self, search: &mut ExitSearch<F>, shape: &Shape<F>, at: Point<F>, reserve: u32) {
         let same = if matches!(shape, Shape::Box { .. }) { SAME } else { SAME_AROUND };
         let begins = search.adding.take().map_or(0, |(_, added)| added);
-        for (number, exit) in exits_of(shape, at).into_iter().enumerate().skip(begins) {
+        for (number, exit) in exits_of(shape, at).into_iter().enumerate() {
+            if number < begins {
+                continue;
+            }
             if number > begins && self.effort() <= reserve {
                 search.adding = Some((at, number));
                 return;

@@ -124,7 +124,11 @@ impl Surroundings {
         let robots =
             self.obstacles.iter().map(|robot| robot.shape.distance_to(me)).enumerate().skip(self.fixed);
         let farthest = robots.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(i, _)| i);
-        farthest.map(|i| self.obstacles.swap_remove(i)).is_some()
+        let (Some(i), Some(last)) = (farthest, self.obstacles.pop()) else { return false };
+        if let Some(left_out) = self.obstacles.get_mut(i) {
+            *left_out = last;
+        }
+        true
     }
 
     fn add_goal(&mut self, field: &FieldSpec, goal: GoalEnd) {
