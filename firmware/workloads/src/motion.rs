@@ -59,6 +59,9 @@ impl Work {
     }
 }
 
+/// Instructions that a step of a wheeled robot leaves for a plan at most (`brain`'s drivetrain).
+const STEP_EFFORT: u32 = 21_000;
+
 /// Inputs of one task.
 #[derive(Clone, Debug)]
 pub struct MotionTask {
@@ -104,7 +107,7 @@ impl MotionTask {
             obstacles,
             within: Some(Shape::Box { low: Point::new(-4.7, -3.2), high: Point::new(4.7, 3.2) }),
             step: 0.01,
-            effort: avoid::EFFORT_MAX,
+            effort: STEP_EFFORT,
         };
         folded(&avoid::plan(&course, &mut Carried::default()).next)
     }
