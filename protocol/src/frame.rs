@@ -2,9 +2,8 @@
 //! (docs/architecture.md §6.1).
 //!
 //! ```text
-//! version 1 | team 1 | sender 1 | epoch 4 LE | counter 4 LE | payload n | tag 8                    to one
-//! robot, or from one version 1 | team 1 | 17       | epoch 4 LE | counter 4 LE | audience 2 LE | payload n |
-//! 3 for each robot in the audience
+//! version 1 | team 1 | sender 1 | epoch 4 LE | counter 4 LE | payload n | tag 8                    to one robot, or from one
+//! version 1 | team 1 | 17       | epoch 4 LE | counter 4 LE | audience 2 LE | payload n | 3 for each robot in the audience
 //! ```
 //!
 //! A tag is SipHash-2-4 under the receiver's key over all bytes before the tags, little endian; a short one

@@ -2,8 +2,7 @@
 //!
 //! ```text
 //! key(purpose, robot) = SipHash-2-4(team key, "onetwo key 2" | purpose 1 | robot 1 | 00)
-//!                     | SipHash-2-4(team key, "onetwo key 2" | purpose 1 | robot 1 | 01)        each 8
-//! bytes, little endian
+//!                     | SipHash-2-4(team key, "onetwo key 2" | purpose 1 | robot 1 | 01)        each 8 bytes, little endian
 //! ```
 //!
 //! Purpose `H` is the key between the host and that robot, purpose `T` (robot 0) the one among all robots of

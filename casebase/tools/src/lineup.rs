@@ -5,8 +5,7 @@
 //! ```toml
 //! [problems]
 //! teammates = [{ x = [-700, -300], y = [-300, 300] }]            # around the ball
-//! opponents = [[{ x = [900, 2050], y = [-1800, 1800] }], []]     # homes on the field; one of the line-ups
-//! is drawn
+//! opponents = [[{ x = [900, 2050], y = [-1800, 1800] }], []]     # homes on the field; one of the line-ups is drawn
 //! ```
 
 use casebase::{FieldMm, PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, PointMm};

@@ -2,9 +2,8 @@
 //! of the documentation. Runs on the PC.
 //!
 //! ```text
-//! tables, paper, comparisons, claims, facts ─┬─► html()         one file: no network, no scripts; light,
-//! dark, paper Mapper: trials played again ─► Map ────────┼─► figure_files() the same plots and maps, one SVG
-//! each
+//! tables, paper, comparisons, claims, facts ─┬─► html()         one file: no network, no scripts; light, dark, paper
+//! Mapper: trials played again ─► Map ────────┼─► figure_files() the same plots and maps, one SVG each
 //!                                            └─► markdown()     docs/evaluation.md, between its markers
 //! ```
 //! Numbers come from `study::evaluation` and are printed, never changed: what a table prints is rounded for

@@ -29,8 +29,7 @@
 //!     // A ball that rolls along +x with 1 m/s, 60 times a second; vision sends mm.
 //!     let t = f64::from(i) / 60.0;
 //!     let ball = DetectionBall { confidence: 1.0, x: (t * 1000.0) as f32, ..DetectionBall::default() };
-//!     let image = DetectionFrame { frame_number: i, t_capture: t, balls: vec![ball],
-//! ..DetectionFrame::default() };
+//!     let image = DetectionFrame { frame_number: i, t_capture: t, balls: vec![ball], ..DetectionFrame::default() };
 //!     let packet = WrapperPacket { detection: Some(image), ..WrapperPacket::default() };
 //!     tracker.handle(&packet, Instant(5_000_000 + (t * 1e6) as u64));
 //! }

@@ -8,8 +8,7 @@
 //! observations give the same match: no clock, one seeded stream for the draw.
 //!
 //! ```text
-//! observation ─► watch (one file a question) ─► events ─► judge: fouls, cards, goals, what follows, from
-//! where
+//! observation ─► watch (one file a question) ─► events ─► judge: fouls, cards, goals, what follows, from where
 //!                                                           │
 //! clock, stages ─► flow: halt, stop, placement, restarts ◄──┘ ─► commands ─► rules::GameState ─► packets
 //! ```

@@ -2,8 +2,7 @@
 //! (Biswas et al. 2014 §6): offence ratio, attack ratio, goals, with intervals beside the paper's numbers.
 //!
 //! ```text
-//! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes, effects ─► matches.json,
-//! text tables, plots
+//! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes, effects ─► matches.json, text tables, plots
 //! ```
 //! Shards, files, resuming and merging are [`crate::store`]'s: equal plans give equal bytes for any number of
 //! threads, shards and interrupts.

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! beginnings of matches ─► evidence ─► proposals ─► scenes (halving) ─► finalists
-//!                                                                          │ scenes of fresh matches,
-//! e-values library ◄── accepted ◄── whole matches, paired by seed ◄── confirmed ◄───┘
+//!                                                                          │ scenes of fresh matches, e-values
+//! library ◄── accepted ◄── whole matches, paired by seed ◄── confirmed ◄───┘
 //! ```
 //! A match is a function of its seed and of the cases that our host and robots retrieve. So a match with an
 //! edited library is, tick by tick, that with the library before, up to the first decision that the edit
