@@ -264,9 +264,7 @@ fn in_stop_placements_and_free_kicks_it_leaves_too_the_keeper_as_well() {
 #[test]
 fn others_that_stand_about_close_no_way_out() {
     // Two keepers of 2013 do not get past three robots that stand close before their goal opening of 0.7 m.
-    // With five times as many starts 10 of 17,550 drives fail; before the planner was bounded by instructions
-    // 11.
-    alone(&prepared().chain(stopped()).collect::<Vec<_>>(), starts(15), 11, 3);
+    alone(&prepared().chain(stopped()).collect::<Vec<_>>(), starts(15), 11, 2);
 }
 
 #[test]
@@ -282,9 +280,7 @@ fn two_whole_teams_that_leave_at_once_do_not_hold_each_other_up() {
             }
         }
     }
-    // One drive in about 5,000 ends otherwise by chance: five of 23,920 with other seeds, before and after
-    // the planner was bounded by instructions.
-    judge(drives, &failed, 1);
+    judge(drives, &failed, 0);
 }
 
 /// Both teams from random places to random places at the same time.

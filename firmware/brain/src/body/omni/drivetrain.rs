@@ -103,15 +103,15 @@ impl Drivetrain {
         self.spent = instructions;
     }
 
+    /// Accounts for more of them.
+    pub fn spend(&mut self, instructions: u32) {
+        self.spent += instructions;
+    }
+
     /// Whether the next plan needs more time than the last ones had: where no path was found in the last
     /// step, every second step, and every step while the robot stands.
     pub fn needs_time(&self) -> bool {
         self.path_age % 2 == 1 || self.path_age > 0 && self.velocity.norm() < THERE_SPEED
-    }
-
-    /// Accounts for more of them.
-    pub fn spend(&mut self, instructions: u32) {
-        self.spent += instructions;
     }
 
     fn stand(&mut self, belief: &Belief, step: f32, face: Option<Angle>) -> Wanted {

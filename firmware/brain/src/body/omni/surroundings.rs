@@ -124,8 +124,9 @@ impl Surroundings {
         let robots =
             self.obstacles.iter().map(|robot| robot.shape.distance_to(me)).enumerate().skip(self.fixed);
         let farthest = robots.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(i, _)| i);
-        let (Some(i), Some(last)) = (farthest, self.obstacles.pop()) else { return false };
-        if let Some(left_out) = self.obstacles.get_mut(i) {
+        let Some(i) = farthest else { return false };
+        let last = self.obstacles.pop();
+        if let (Some(left_out), Some(last)) = (self.obstacles.get_mut(i), last) {
             *left_out = last;
         }
         true
@@ -241,3 +242,29 @@ const STOPS_IN: f32 = 0.5;
 const LEAVES_PAST: f32 = 1.5;
 /// Goal walls matter within this distance of the goal line, m.
 const NEAR_GOAL: f32 = 0.7;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rules::League;
+
+    #[test]
+    fn robots_are_left_out_farthest_first_and_regions_of_the_rules_never() {
+        let field = League::DivisionB.field();
+        let region = Obstacle::region(Shape::Disc { center: Point::new(4.0, 3.0), radius: 0.5 });
+        let robot = |x: f32| Obstacle::robot(Point::new(x, 0.0), Vector::default(), 0.2);
+        let mut around = Surroundings { fixed: 1, ..Surroundings::none(&field) };
+        for obstacle in [region, robot(1.0), robot(3.0), robot(2.0)] {
+            around.add(obstacle);
+        }
+        let me = Point::new(0.0, 0.0);
+        for left in [[1.0, 2.0].as_slice(), &[1.0], &[]] {
+            assert!(around.leave_out_farthest(me));
+            assert_eq!(around.obstacles[0], region);
+            let robots: Vec<_> = left.iter().map(|x| robot(*x)).collect();
+            assert_eq!(around.obstacles[1..], robots);
+        }
+        assert!(!around.leave_out_farthest(me));
+        assert_eq!(around.obstacles, [region]);
+    }
+}
