@@ -261,8 +261,7 @@ mod tests {
         for left in [[1.0, 2.0].as_slice(), &[1.0], &[]] {
             assert!(around.leave_out_farthest(me));
             assert_eq!(around.obstacles[0], region);
-            let robots: Vec<_> = left.iter().map(|x| robot(*x)).collect();
-            assert_eq!(around.obstacles[1..], robots);
+            assert!(around.obstacles[1..].iter().copied().eq(left.iter().map(|x| robot(*x))), "{around:?}");
         }
         assert!(!around.leave_out_farthest(me));
         assert_eq!(around.obstacles, [region]);
