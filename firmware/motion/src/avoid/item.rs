@@ -77,11 +77,11 @@ impl<'o, F: Copy> Scene<'o, F> {
     }
 
     /// Routes keep [`SKIN`] from everything, but no more than start and goal do. A robot that leaves a region
-    /// may go through all regions; a body that holds the start is taken to end just before it, so that no path leads
-    /// into it. A body that moves with the robot, as a ball that rolls on beside it, is left out where the
-    /// exit leads away from it: braking would keep them together; a body that lies before the start would be
-    /// pushed along, and stays. Walls meet: the distance kept from the wall nearest to the start is kept from
-    /// all of them, else none could be followed around to the next.
+    /// may go through all regions; a body that holds the start is taken to end just before it, so that no
+    /// path leads into it. A body that moves with the robot, as a ball that rolls on beside it, is left out
+    /// where the exit leads away from it: braking would keep them together; a body that lies before the start
+    /// would be pushed along, and stays. Walls meet: the distance kept from the wall nearest to the start is
+    /// kept from all of them, else none could be followed around to the next.
     pub(super) fn keep_apart(&mut self, from: Point<F>, goal: Point<F>, leaves: bool) {
         let mut wall = SKIN;
         // Who only dodges a body stays out of the regions.
