@@ -25,8 +25,10 @@ const CHIP_LENGTH_M: f32 = 3.5;
 const LENGTH_MIN_M: f32 = 1.2;
 /// cm/s, 3-D: at 45° the first hop is v²/g = 1.6 m.
 const CHIP_CM_S: u16 = 400;
-/// It rests at least this far inside the lines, m.
-const INSIDE_M: f32 = 0.3;
+/// A flat clearance rests at least this far inside the lines, m; a chip, which lands and rolls on less surely,
+/// this far.
+const INSIDE_FLAT_M: f32 = 0.3;
+const INSIDE_CHIP_M: f32 = 1.0;
 /// A chip is over robots from this distance on, m.
 const CHIP_RISES_M: f32 = 0.3;
 /// From a ball's way to the centre of a robot that it passes, m: both radii and a kick's scatter.
@@ -69,8 +71,8 @@ pub fn clearance(
         .map(|step| Vector::polar(1.0, Angle::degrees(STEP_DEG * f32::from(step))))
         .filter(|ray| ray.x() > BACK_MAX && fits(*ray))
         .flat_map(|ray| {
-            let flat = view.clamp(from + ray * FLAT_LENGTH_M, INSIDE_M);
-            let chip = view.clamp(from + ray * CHIP_LENGTH_M, INSIDE_M);
+            let flat = view.clamp(from + ray * FLAT_LENGTH_M, INSIDE_FLAT_M);
+            let chip = view.clamp(from + ray * CHIP_LENGTH_M, INSIDE_CHIP_M);
             [(flat, support::push_kick(flat.distance(from))), (chip, KickOrder::Chip(CHIP_CM_S))]
         })
         .filter(|(at, kick)| {
