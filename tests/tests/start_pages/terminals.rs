@@ -144,14 +144,6 @@ impl Terminal {
     }
 }
 
-impl Terminal {
-    /// Sends a signal to the command and all that it has started.
-    fn signal(&self, name: &str) {
-        let group = format!("-{}", self.child.id());
-        let _ = Command::new("kill").args([name, "--", &group]).stderr(Stdio::null()).status();
-    }
-}
-
 impl Drop for Terminal {
     fn drop(&mut self) {
         // As Ctrl-C does, to the command and what it has started; then, where it does not listen, without
