@@ -38,11 +38,12 @@ pub(crate) fn pixel(tab: &mut Tab<'_>, at: &str) -> [f64; 2] {
     [at[0].as_f64().unwrap(), at[1].as_f64().unwrap()]
 }
 
-/// Looks for a decision whose moment has two robots for a case, and goes there.
+/// Looks for a decision whose moment has two robots for a case, for the robot that decided too, and goes there.
 const MOMENT: &str = "(async () => {
   for (const e of onetwo.store.matchEvents.filter((e) => e.problem)) {
     const answer = await fetch('/api/freeze', { method: 'POST', body: JSON.stringify({ t: e.t, team: e.team }) });
-    if (!answer.ok || Object.keys((await answer.json()).teammates).length < 2) continue;
+    const two = (situation) => Object.keys(situation.teammates).length >= 2;
+    if (!answer.ok || !two(await answer.json()) || !two(e.problem)) continue;
     window.moment = { t: Number(e.t.toFixed(2)), team: e.team };
     location.hash = `t=${window.moment.t}`;
     return true;
