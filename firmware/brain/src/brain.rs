@@ -342,7 +342,7 @@ const EFFORT_OF_GAMEPLAY: u32 = 7_000;
 const INPUTS_OF_PLAN_MAX: u32 = 10_500;
 /// The same of a plan that tests the straight path only.
 const INPUTS_OF_LEAST_PLAN_MAX: u32 = 13_500;
-/// Instructions of inputs after which no other packet is opened, whoever sends it: a step that opens as many
+/// Instructions of inputs after which no other packet is opened, from any sender: a step that opens as many
 /// reuses its path.
 const INPUTS_MAX: u32 = 18_000;
 /// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual

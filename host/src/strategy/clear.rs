@@ -117,7 +117,7 @@ impl<'v> Release<'v> {
             .fold(f32::INFINITY, f32::min);
         let off = from - who.position;
         let straight = if off.norm() < contact::TOUCHES_WITHIN { who.heading } else { off.angle() };
-        // At a restart nobody may come before the kick.
+        // At a restart no opponent may come before the kick.
         let pressed_after = if view.phase == Phase::Run {
             theirs - touch_time(who, from, &c.receiver)
         } else {
@@ -162,7 +162,7 @@ struct Rating<'v> {
 
 impl<'v> Rating<'v> {
     fn of(view: &'v View, kicks: &'v Kicks, who: &ViewRobot, from: Point<Attack>) -> Self {
-        // No robot of ours: whoever is sooner there receives it.
+        // No robot of ours is the receiver: the soonest receives it.
         let placeholder = ViewRobot::at_rest(RobotId::ZERO, from);
         let scene = PassScene::of(view, kicks, from, Some(who.id), &placeholder);
         Self { view, who: who.id, from, release: Release::of(view, kicks, who, from), scene }
@@ -237,6 +237,6 @@ mod tests {
         let (ahead, back) = (Point::new(0.0, 1.5), Point::new(-4.4, 1.4));
         assert!(lost(&view, ahead) + 0.2 < lost(&view, back));
         view.phase = Phase::FreeKick(rules::Side::Ours);
-        assert_eq!(lost(&view, back), 0.0, "nobody may come before the kick");
+        assert_eq!(lost(&view, back), 0.0, "no opponent may come before the kick");
     }
 }

@@ -77,7 +77,7 @@ impl Balls {
         let fitting = others.filter_map(|(_, track)| {
             let track = track.as_mut()?;
             let off = track.fits(position, at, models)?;
-            // A kicked ball is a new one; nobody kicks another ball.
+            // A kicked ball is a new one; other balls are not kicked.
             (!track.other || off <= OTHER_JUMPS_WITHIN_M).then_some((off, track))
         });
         if let Some((_, track)) = fitting.reduce(|best, next| if next.0 < best.0 { next } else { best }) {
