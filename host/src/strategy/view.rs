@@ -10,6 +10,9 @@ use rules::{Colour, FieldSpec, Phase, Side};
 use super::stakes::Stakes;
 use crate::world::World;
 
+/// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
+pub(super) const HAS_BALL_WITHIN_M: f32 = 0.2;
+
 /// Most robots of a team in a view: one per id.
 pub const ROBOTS_MAX: usize = RobotId::COUNT;
 

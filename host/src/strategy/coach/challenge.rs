@@ -7,7 +7,7 @@ use protocol::{Duration, Instant, RobotId};
 
 use super::super::order::{OrderReason, Role, Task};
 use super::super::possession::arrival;
-use super::super::view::{View, ViewBall, ViewRobot};
+use super::super::view::{HAS_BALL_WITHIN_M, View, ViewBall, ViewRobot};
 use super::super::{roles, support, threat};
 use super::{Coach, Plan};
 
@@ -16,8 +16,6 @@ use super::{Coach, Plan};
 const WALL_LEAVES_FOR_S: f32 = 0.4;
 /// A carrier is met where it will be after this time, s.
 const CARRIED_FOR_S: f32 = 0.3;
-/// An opponent this near the ball carries it, m.
-const CARRIES_WITHIN_M: f32 = 0.2;
 /// Distance from the ball to the centre of the robot that stands in its way, m: robots keep 0.35 m off the
 /// centre of one that moves (`brain`'s surroundings).
 const BLOCKS_AT_M: f32 = 0.28;
@@ -41,7 +39,7 @@ const MARKS_WITHIN_M: f32 = 0.5;
 
 impl Coach {
     /// The opponent that will have the ball, and where, if it is clearly sooner at it than ours.
-    pub(super) fn see_whose(
+    pub(super) fn opponent_first_at_ball(
         &mut self,
         view: &View,
         ball: &ViewBall,
@@ -145,7 +143,7 @@ impl Coach {
         // The carrier's body is not between.
         let open = off.dot(to_carrier) < OPEN_COS * off.norm() * to_carrier.norm()
             || off.norm() < to_carrier.norm() - OPEN_BY_M;
-        // Near our goal its shot is stood in the way of first.
+        // Near our goal its shot is blocked first.
         let to_goal = view.our_goal() - ball.position;
         let stands = -off.dot(to_goal) > STANDS_COS * off.norm() * to_goal.norm();
         let heading = Vector::polar(1.0, carrier.heading);
@@ -165,7 +163,7 @@ impl Coach {
 
 /// Place of a body before a carrier, on the line to our goal from where it will be soon.
 fn blocks_carrier(view: &View, has_at: Point<Attack>, carrier: &ViewRobot) -> Point<Attack> {
-    let carried = carrier.position.distance(has_at) < CARRIES_WITHIN_M;
+    let carried = carrier.position.distance(has_at) < HAS_BALL_WITHIN_M;
     let there = if carried { has_at + carrier.velocity * CARRIED_FOR_S } else { has_at };
     let home = (view.our_goal() - there).unit().unwrap_or_default();
     threat::legal(view, there + home * BLOCKS_AT_M, &threat::ThreatSettings::default())
@@ -195,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn who_holds_the_ball_near_our_goal_is_stood_in_the_way_of_by_one_who_is_no_wall() {
+    fn a_carrier_near_our_goal_is_blocked_by_a_robot_outside_the_wall() {
         let (view, orders) = against((-2.4, 0.8));
         let challengers: Vec<_> =
             orders.iter().filter(|order| matches!(order.why, OrderReason::Challenges { .. })).collect();
@@ -209,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn who_stands_in_the_way_takes_the_ball_and_the_wall_stays() {
+    fn a_robot_that_blocks_a_carrier_takes_the_ball_and_the_wall_stays() {
         let (mut view, _) = against((-2.4, 0.8));
         let ball = view.ball.unwrap().position;
         view.ours[3].position = ball + (view.our_goal() - ball).unit().unwrap() * 0.25;

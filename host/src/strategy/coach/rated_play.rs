@@ -117,7 +117,7 @@ impl Coach {
         let first = self.first_at(view, plan, &ball);
         self.roles.ball_player = first.map(|(id, _)| id);
         let first_seconds = first.map_or(f32::INFINITY, |(_, arrival)| arrival.seconds);
-        if let Some((opponent, at)) = self.see_whose(view, &ball, first_seconds) {
+        if let Some((opponent, at)) = self.opponent_first_at_ball(view, &ball, first_seconds) {
             return self.challenge(plan, &ball, (opponent, at), view.now);
         }
         if let Some((id, arrival)) = first

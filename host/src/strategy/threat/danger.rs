@@ -7,11 +7,11 @@ use geometry::{Attack, Point};
 use motion::ball::BallModel;
 use protocol::RobotId;
 
-use super::super::view::{ROBOTS_MAX, View, ViewRobot};
+use super::super::view::{HAS_BALL_WITHIN_M, ROBOTS_MAX, View, ViewRobot};
 use super::angle::{BODY, Opening, widest};
 use super::cover::Cover;
 use super::edge::Edge;
-use super::receiving::{Because, FirstLevel, HAS_BALL_WITHIN_M};
+use super::receiving::{Because, FirstLevel};
 use super::{Memory, ThreatSettings, legal};
 
 /// Passes arrive with this speed, m/s, at which a receiver can shoot at once.

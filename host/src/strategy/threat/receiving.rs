@@ -3,11 +3,8 @@
 use geometry::{Attack, Point, Vector};
 use protocol::RobotId;
 
-use super::super::view::{View, nearest};
+use super::super::view::{HAS_BALL_WITHIN_M, View, nearest};
 use super::ThreatSettings;
-
-/// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
-pub(super) const HAS_BALL_WITHIN_M: f32 = 0.2;
 
 /// Equation 6: −(|d| / |v|) · (1 + c · (1 − cos θ)), s, at most 0; greater is riskier.
 ///

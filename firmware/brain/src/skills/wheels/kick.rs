@@ -55,7 +55,7 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
             if aimed || ball.position.distance(belief.pose.position) > BALL_AT + FACING_DISTANCE_M {
                 Drive { kick: if aimed { kick } else { OmniKick::None }, ..drive }.into()
             } else {
-                // Too near to touch the ball while it faces elsewhere: turn on the spot.
+                // So near, driving on unaimed would push the ball: turn on the spot.
                 Drive::bold(belief.pose.position, face).into()
             }
         }
