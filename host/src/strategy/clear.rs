@@ -25,7 +25,8 @@ const CHIP_LENGTH_M: f32 = 3.5;
 const LENGTH_MIN_M: f32 = 1.2;
 /// cm/s, 3-D: at 45° the first hop is v²/g = 1.6 m.
 const CHIP_CM_S: u16 = 400;
-/// A flat clearance rests at least this far inside the lines, m; a chip, whose roll is less certain, this far.
+/// A flat clearance rests at least this far inside the lines, m; a chip, whose roll is less certain, this
+/// far.
 const INSIDE_FLAT_M: f32 = 0.3;
 const INSIDE_CHIP_M: f32 = 1.0;
 /// A chip is over robots from this distance on, m.

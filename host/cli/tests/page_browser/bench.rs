@@ -38,8 +38,8 @@ pub(crate) fn pixel(tab: &mut Tab<'_>, at: &str) -> [f64; 2] {
     [at[0].as_f64().unwrap(), at[1].as_f64().unwrap()]
 }
 
-/// Looks for a decision with two robots for a case, in the true picture and in that of the robot that decided,
-/// and goes there.
+/// Looks for a decision with two robots for a case, in the true picture and in that of the robot that
+/// decided, and goes there.
 const MOMENT: &str = "(async () => {
   for (const e of onetwo.store.matchEvents.filter((e) => e.problem)) {
     const answer = await fetch('/api/freeze', { method: 'POST', body: JSON.stringify({ t: e.t, team: e.team }) });
