@@ -31,7 +31,7 @@ const BETTER_BY_MIN: f32 = 0.02;
 /// A pass of a restart with a smaller P(receive) waits for a better one, for as long of the 5 s (A) that the
 /// rules give.
 const POOR_PASS_P: f32 = 0.4;
-const WAITS_FOR_BETTER: Duration = Duration::millis(800);
+const WAITS_FOR_BETTER: Duration = Duration::millis(1500);
 /// At a restart by this, more with every second of it, and by this share of it where what was chosen is poor.
 const RESTART_BETTER_BY: f32 = 0.05;
 const POOR_SHARE: f32 = 0.4;
