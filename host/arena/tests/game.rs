@@ -62,9 +62,9 @@ fn robots_are_slow_in_stop_still_in_halt_and_no_ball_is_too_fast() {
 
 #[test]
 fn the_ball_is_mostly_in_play_both_teams_have_chances_and_fouls_are_few() {
-    let matches: Vec<GameReport> = (1..=8).map(|seed| short(seed, 120.0, &mut NoWatcher)).collect();
-    // Over seeds 101 to 148 the mean is 0.516 (example `conduct`; median 0.52); a sixth is the
-    // start of the two halves.
+    let matches: Vec<GameReport> = (1..=24).map(|seed| short(seed, 120.0, &mut NoWatcher)).collect();
+    // Over 96 other seeds the mean is 0.525 with a standard deviation of 0.084 (example `conduct`, 101 to 148
+    // and 201 to 248), so that of 24 matches is 0.017 off; a sixth is the start of the two halves.
     let in_play: Vec<f32> = matches.iter().map(|report| report.ball_in_play).collect();
     let mean = in_play.iter().sum::<f32>() / in_play.len() as f32;
     assert!(mean > 0.5 && in_play.iter().all(|share| *share > 0.25), "{in_play:?}");
@@ -73,7 +73,7 @@ fn the_ball_is_mostly_in_play_both_teams_have_chances_and_fouls_are_few() {
     assert!(chances(|report| report.metrics.yellow.chances) > 0);
     let fouls =
         |report: &GameReport| -> u32 { report.fouls.blue.values().chain(report.fouls.yellow.values()).sum() };
-    let (all, minutes) = (matches.iter().map(fouls).sum::<u32>(), 16);
+    let (all, minutes) = (matches.iter().map(fouls).sum::<u32>(), 2 * matches.len() as u32);
     assert!(
         all <= minutes,
         "{all} fouls in {minutes} minutes: {:?}",
