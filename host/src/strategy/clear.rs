@@ -162,7 +162,7 @@ struct Rating<'v> {
 
 impl<'v> Rating<'v> {
     fn of(view: &'v View, kicks: &'v Kicks, who: &ViewRobot, from: Point<Attack>) -> Self {
-        // No robot of ours is the receiver: the soonest receives it.
+        // A clearance has no receiver of ours: the robot that is soonest there gets it.
         let placeholder = ViewRobot::at_rest(RobotId::ZERO, from);
         let scene = PassScene::of(view, kicks, from, Some(who.id), &placeholder);
         Self { view, who: who.id, from, release: Release::of(view, kicks, who, from), scene }

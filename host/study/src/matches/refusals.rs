@@ -59,7 +59,7 @@ impl RefusalFile {
         Self(matches.with_file_name(format!("{}.jsonl", name.replacen("trials", "refusals", 1))))
     }
 
-    /// Prepares the file for a run: without a torn last line, and empty where the matches are played anew.
+    /// Opens the file for a run: drops an incomplete last line, and everything where the matches restart.
     pub fn open(self, matches: &Path) -> Result<Self, EvaluationError> {
         let failed = EvaluationError::file(&self.0);
         match LineFile::open(&self.0, LEN_MAX) {

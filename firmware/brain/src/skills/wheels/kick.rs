@@ -55,7 +55,7 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
             if aimed || ball.position.distance(belief.pose.position) > BALL_AT + FACING_DISTANCE_M {
                 Drive { kick: if aimed { kick } else { OmniKick::None }, ..drive }.into()
             } else {
-                // So near, driving on unaimed would push the ball: turn on the spot.
+                // This near, driving on before it is aimed would push the ball: turn on the spot.
                 Drive::bold(belief.pose.position, face).into()
             }
         }
