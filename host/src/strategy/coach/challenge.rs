@@ -38,8 +38,8 @@ const SECOND_WITHIN_S: f32 = 1.5;
 const MARKS_WITHIN_M: f32 = 0.5;
 
 impl Coach {
-    /// The opponent that will have the ball, and where, if it is clearly sooner at it than ours. Keeps whether
-    /// there is one, for the hysteresis of the next decision.
+    /// The opponent that will have the ball, and where, if it is clearly sooner at it than ours. Keeps
+    /// whether there is one: the next decision has hysteresis.
     pub(super) fn opponent_first_at_ball(
         &mut self,
         view: &View,
