@@ -191,7 +191,7 @@ impl RefereeEvent {
 const DESCRIPTION_LEN: usize = 200;
 
 /// A name as the league writes it; the number where nothing is known by it.
-fn number_name(number: i32, known: Option<impl std::fmt::Debug>) -> String {
+pub(crate) fn number_name(number: i32, known: Option<impl std::fmt::Debug>) -> String {
     known.map_or_else(|| format!("NUMBER_{number}"), |known| screaming(&format!("{known:?}")))
 }
 

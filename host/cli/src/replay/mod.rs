@@ -1,19 +1,22 @@
 //! `onetwo replay`: contents of a recorded match, the field at a moment, and whether the host decides the
-//! same again.
+//! same again; its packets to the network again, parts of it as log files, and tables.
 //!
 //! Two kinds of files, distinguished by their first bytes: the league's log files (of any team) and traces of
 //! ours (docs/architecture.md §7.4).
 
 mod compare;
+mod export;
 mod league_log;
 mod report;
+mod rewrite;
+mod send;
 mod show;
 mod trace;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use feed::recording::{RecordedError, begins_as_trace, in_file};
 use rules::{Colour, League};
 
@@ -24,7 +27,7 @@ use crate::args::parsers::{colour, league, moment_in_seconds};
 
 /// The file, and what to print of it.
 #[derive(Debug, Args)]
-#[command(after_help = EXIT_CODES)]
+#[command(after_help = EXIT_CODES, group(ArgGroup::new("output").args(["cut", "join", "export"])))]
 pub(crate) struct ReplayArgs {
     /// A log file of the league (.log, .log.gz) or a trace of ours (.trace), gzipped or not.
     file: PathBuf,
@@ -65,6 +68,15 @@ pub(crate) struct ReplayArgs {
     #[arg(long, value_name = "TRACE", conflicts_with_all = ["at", "event", "problems", "team"])]
     compare: Option<PathBuf>,
     #[command(flatten)]
+    send: send::SendArgs,
+    #[command(flatten)]
+    rewrite: rewrite::RewriteArgs,
+    #[command(flatten)]
+    export: export::ExportArgs,
+    /// The file that --cut, --join or --export writes.
+    #[arg(long, value_name = "FILE", requires = "output")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
     directory: DirectoryArgs,
     /// The key of the team that recorded a trace, if it had one: 32 hexadecimal digits in a file.
     #[arg(long, value_name = "FILE")]
@@ -78,6 +90,16 @@ for is not in it; 2 wrong usage.
 With --compare: 0 the traces are equal, 1 they differ, or one of them is damaged or cannot be compared with the other; 2 wrong usage.";
 
 pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
+    if args.send.is_wanted() {
+        return send::run(args);
+    }
+    match &args.out {
+        Some(out) if args.rewrite.is_wanted() => return rewrite::run(args, out),
+        _ => {}
+    }
+    if let Some(form) = args.export.form() {
+        return export::run(args, form);
+    }
     if args.watch {
         return show::run(args);
     }

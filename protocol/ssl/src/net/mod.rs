@@ -33,7 +33,9 @@ pub mod addresses {
 
     /// [`WrapperPacket`](crate::vision::WrapperPacket) of a real field (SSL-Vision, vision-processor).
     pub const VISION: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10006);
-    /// The same of a simulator, so that it disturbs no tournament's network (grSim, ER-Force).
+    /// [`vision::legacy::WrapperPacket`](crate::vision::legacy::WrapperPacket), until 2014.
+    pub const VISION_LEGACY: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10005);
+    /// The same as [`VISION`] of a simulator, so that it disturbs no tournament's network (grSim, ER-Force).
     pub const VISION_SIMULATED: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10020);
     /// Packets of the game controller: [`Referee`](crate::referee::Referee).
     pub const REFEREE: SocketAddrV4 = SocketAddrV4::new(REFEREE_GROUP, 10003);

@@ -1,0 +1,190 @@
+//! `recordings_out_cli`: tests of `onetwo replay` where a recording leaves again: to the network, as a log file,
+//! as a table.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::net::UdpSocket;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use ssl::log::{MessageKind, Record, open};
+
+fn replay(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_onetwo")).arg("replay").args(arguments).output().expect("it starts")
+}
+
+fn done(arguments: &[&str]) -> String {
+    let out = replay(arguments);
+    assert_eq!(out.status.code(), Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&out.stderr));
+    String::from_utf8(out.stdout).expect("UTF-8")
+}
+
+fn refused(arguments: &[&str], code: i32) -> String {
+    let out = replay(arguments);
+    assert_eq!(out.status.code(), Some(code), "{arguments:?}");
+    String::from_utf8(out.stderr).expect("UTF-8")
+}
+
+fn recording(name: &str) -> String {
+    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../protocol/ssl/tests/data");
+    directory.join(name).display().to_string()
+}
+
+fn scratch(name: &str) -> String {
+    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("recordings-out");
+    fs::create_dir_all(&directory).expect("a directory");
+    directory.join(name).display().to_string()
+}
+
+fn records(file: &str) -> Vec<Record> {
+    open(Path::new(file)).expect("a log").collect()
+}
+
+/// Everything that comes to a port of this machine until it is silent for 3 s.
+fn listen() -> (String, thread::JoinHandle<Vec<Vec<u8>>>) {
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let address = socket.local_addr().expect("its address").to_string();
+    let heard = thread::spawn(move || {
+        let (mut heard, mut buffer) = (Vec::new(), vec![0; 65_536]);
+        // The program needs a moment to start.
+        socket.set_read_timeout(Some(Duration::from_secs(30))).expect("a timeout");
+        while let Ok(bytes) = socket.recv(&mut buffer) {
+            heard.push(buffer[..bytes].to_vec());
+            socket.set_read_timeout(Some(Duration::from_secs(3))).expect("a timeout");
+        }
+        heard
+    });
+    (address, heard)
+}
+
+fn payloads(records: &[Record], kind: MessageKind) -> Vec<Vec<u8>> {
+    records.iter().filter(|record| record.kind == kind).map(|record| record.payload.clone()).collect()
+}
+
+#[test]
+fn a_log_sent_out_again_gives_receivers_the_same_bytes_at_its_times() {
+    let file = recording("grsim_divB_22s.log.gz");
+    let ((vision, seen), (referee, heard)) = (listen(), listen());
+    let began = Instant::now();
+    let text = done(&[
+        &file,
+        "--send",
+        "127.0.0.1",
+        "--vision",
+        &vision,
+        "--referee",
+        &referee,
+        "--at",
+        "10",
+        "--speed",
+        "4",
+        "--json",
+    ]);
+    let took_s = began.elapsed().as_secs_f64();
+    let report: Value = serde_json::from_str(&text).expect("JSON");
+    let all = records(&file);
+    let start_ns = all[0].timestamp_ns + 10_000_000_000;
+    let later: Vec<_> = all.into_iter().skip_while(|record| record.timestamp_ns < start_ns).collect();
+    let span_s = (later[later.len() - 1].timestamp_ns - later[0].timestamp_ns) as f64 * 1e-9;
+    assert!((span_s / 4.0..span_s / 4.0 + 3.0).contains(&took_s), "{took_s} s for {span_s} s");
+    let (seen, heard) = (seen.join().expect("it ends"), heard.join().expect("it ends"));
+    assert!(seen == payloads(&later, MessageKind::Vision2014), "vision differs: {} packets", seen.len());
+    assert!(heard == payloads(&later, MessageKind::Refbox2013), "the referee differs: {}", heard.len());
+    assert_eq!(report["sent"]["vision"]["packets"], seen.len());
+    assert_eq!(report["sent"]["referee"]["failed"], 0);
+}
+
+#[test]
+fn a_part_cut_out_and_joined_again_is_the_whole() {
+    let file = recording("grsim_divB_22s.log.gz");
+    let [first, second, whole] = ["first.log", "second.log.gz", "whole.log.gz"].map(scratch);
+    done(&[&file, "--cut", "0", "8", "--out", &first]);
+    done(&[&file, "--cut", "8", "1e6", "--out", &second]);
+    done(&[&first, "--join", &second, "--out", &whole]);
+    assert!(records(&file) == records(&whole), "time, kind and bytes of every message");
+    let all = records(&file);
+    let inside = |record: &Record| record.timestamp_ns < all[0].timestamp_ns + 8_000_000_000;
+    // Neighbours may be out of order by fractions of a millisecond.
+    assert!(records(&first).len().abs_diff(all.iter().filter(|record| inside(record)).count()) <= 2);
+}
+
+#[test]
+fn a_joined_file_that_begins_too_early_is_moved_and_told() {
+    let (file, out) = (recording("grsim_divB_22s.log.gz"), scratch("twice.log.gz"));
+    let printed = replay(&[&file, "--join", &file, "--out", &out]);
+    assert_eq!(printed.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&printed.stderr).contains("moved by"));
+    let (once, twice) = (records(&file), records(&out));
+    assert_eq!(twice.len(), 2 * once.len());
+    assert!(once.iter().zip(&twice[once.len()..]).all(|(a, b)| a.payload == b.payload));
+    let end_ns = once.iter().map(|record| record.timestamp_ns).max().expect("messages");
+    assert_eq!(twice[once.len()].timestamp_ns, end_ns + 1_000_000_000);
+}
+
+#[test]
+fn a_table_says_what_a_moment_says_and_both_forms_are_one() {
+    let (file, out) = (recording("erforce_divB_realistic_22s.log.gz"), scratch("field.csv"));
+    done(&[&file, "--export", "csv", "--out", &out]);
+    let mut table = csv::Reader::from_path(&out).expect("a table");
+    let columns: Vec<_> = table.headers().expect("names").iter().map(str::to_owned).collect();
+    let rows: Vec<BTreeMap<String, String>> = (table.records())
+        .map(|row| columns.iter().cloned().zip(row.expect("a row").iter().map(str::to_owned)).collect())
+        .collect();
+    let lines: Vec<Value> = (done(&[&file, "--export", "jsonl"]).lines())
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect();
+    assert_eq!(rows.len(), lines.len());
+    for (row, line) in rows.iter().zip(&lines) {
+        let known: Vec<_> = row.iter().filter(|(_, value)| !value.is_empty()).collect();
+        assert_eq!(known.len(), line.as_object().expect("an object").len());
+        for (column, value) in known {
+            let cell = &line[column];
+            assert_eq!(*value, cell.as_str().map_or_else(|| cell.to_string(), str::to_owned), "{column}");
+        }
+    }
+    let row = &rows[rows.len() / 2];
+    let moment: Value =
+        serde_json::from_str(&done(&[&file, "--at", &row["time_s"], "--json"])).expect("JSON");
+    for robot in moment["yellow"].as_array().expect("robots") {
+        for (axis, name) in ["x_m", "y_m"].iter().enumerate() {
+            let column = format!("yellow_{}_{name}", robot["id"]);
+            let difference =
+                row[&column].parse::<f64>().expect("a number") - robot["at"][axis].as_f64().expect("m");
+            assert!(difference.abs() < 2e-4, "{column}: {difference}");
+        }
+    }
+    let summary: Value = serde_json::from_str(&done(&[&file, "--json"])).expect("JSON");
+    let told: usize = rows
+        .iter()
+        .filter(|row| !row["events"].is_empty())
+        .map(|row| row["events"].split("; ").count())
+        .sum();
+    assert_eq!(told, summary["happenings"].as_array().expect("events").len());
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_and_destroys_nothing() {
+    let (file, copy) = (recording("grsim_divB_22s.log.gz"), scratch("copy.log.gz"));
+    fs::copy(&file, &copy).expect("a copy");
+    assert!(refused(&[&copy, "--cut", "0", "1", "--out", &copy], 1).contains("copy.log.gz"));
+    assert!(fs::read(&copy).expect("it is there") == fs::read(&file).expect("it is there"));
+    assert!(refused(&[&file, "--cut", "5", "2", "--out", &scratch("none.log")], 1).contains("less than TO"));
+    assert!(
+        refused(&[&file, "--cut", "50", "60", "--out", &scratch("none.log")], 1)
+            .contains("no packet from 50 s")
+    );
+    assert!(
+        refused(&[&file, "--cut", "0", "1", "--out", &scratch("none.txt")], 1).contains(".log or .log.gz")
+    );
+    assert!(refused(&[&file, "--send", "127.0.0.1", "--at", "99"], 1).contains("it ends after"));
+    assert!(refused(&[&file, "--export", "csv", "--tracked", "recorded"], 1).contains("--tracked own"));
+    for usage in
+        [&["--cut", "0", "1"][..], &["--out", "x.csv"], &["--speed", "2"], &["--send", "127.0.0.1:1"]]
+    {
+        refused(&[&[&*file], usage].concat(), 2);
+    }
+    assert!(!Path::new(&scratch("none.log")).exists());
+}
