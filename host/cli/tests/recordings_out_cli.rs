@@ -180,7 +180,8 @@ fn what_cannot_be_done_is_refused_and_destroys_nothing() {
         refused(&[&file, "--cut", "0", "1", "--out", &scratch("none.txt")], 1).contains(".log or .log.gz")
     );
     assert!(refused(&[&file, "--send", "127.0.0.1", "--at", "99"], 1).contains("it ends after"));
-    assert!(refused(&[&file, "--export", "csv", "--tracked", "recorded"], 1).contains("--tracked own"));
+    let nobody = ["--export", "csv", "--tracked", "recorded", "--tracker-name", "nobody"];
+    assert!(refused(&[&[&*file], &nobody[..]].concat(), 1).contains("no tracker of that name; it has"));
     for usage in
         [&["--cut", "0", "1"][..], &["--out", "x.csv"], &["--speed", "2"], &["--send", "127.0.0.1:1"]]
     {
