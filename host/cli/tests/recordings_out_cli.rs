@@ -1,5 +1,5 @@
-//! `recordings_out_cli`: tests of `onetwo replay` where a recording leaves again: to the network, as a log file,
-//! as a table.
+//! `recordings_out_cli`: tests of `onetwo replay` where a recording leaves again: to the network, as a log
+//! file, as a table.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -17,13 +17,13 @@ use crate::output::{lines, note};
 /// Form of the table, and where its positions come from.
 #[derive(Debug, Args)]
 pub(super) struct ExportArgs {
-    /// Print the tracked field, the referee and events as a table, one row a time: columns with units in their
-    /// names; with --out into a file.
+    /// Print the tracked field, the referee and events as a table, one row a time: columns with units in
+    /// their names; with --out into a file.
     #[arg(long, value_name = "FORM", value_enum,
         conflicts_with_all = ["watch", "at", "event", "problems", "team", "check", "compare", "json"])]
     export: Option<TableForm>,
-    /// Where the positions come from: own (our tracker, on the recording's vision) or recorded (the first tracker whose
-    /// packets are in the recording).
+    /// Where the positions come from: own (our tracker, on the recording's vision) or recorded (the first
+    /// tracker whose packets are in the recording).
     #[arg(long, value_name = "SOURCE", value_enum, default_value = "own", requires = "export")]
     tracked: Tracked,
     /// With --tracked recorded: the tracker of this name or uuid.
@@ -50,8 +50,8 @@ enum Tracked {
 /// Why there is no table.
 #[derive(Debug, Error)]
 enum ExportError {
-    #[error("{file}: no row: {what}")]
-    NoRow { file: String, what: String },
+    #[error("{file}: no table: {what}")]
+    Nothing { file: String, what: String },
 }
 
 impl ExportArgs {
@@ -74,7 +74,7 @@ pub(super) fn run(args: &ReplayArgs, form: TableForm) -> Result<ExitCode, Failur
     let mut first = Rows::open(&args.file, source.clone())?;
     let mut found = 0_u64;
     let columns = columns(first.by_ref().inspect(|_| found += 1));
-    if found == 0 {
+    if found == 0 || (args.export.tracked == Tracked::Recorded && !first.follows_tracker()) {
         let what = match source {
             FieldSource::Own => {
                 "it has neither vision nor events of a referee; --tracked recorded reads packets of trackers"
@@ -85,7 +85,9 @@ pub(super) fn run(args: &ReplayArgs, form: TableForm) -> Result<ExitCode, Failur
             }
             FieldSource::Recorded(_) => format!("no tracker of that name; it has {}", names(&first)),
         };
-        return Err(ExportError::NoRow { file: foreign::printable_path(&args.file).to_string(), what }.into());
+        return Err(
+            ExportError::Nothing { file: foreign::printable_path(&args.file).to_string(), what }.into()
+        );
     }
     let kind = if form == TableForm::Csv { FileKind::Csv } else { FileKind::Json };
     if let Some(out) = &args.out {

@@ -23,8 +23,8 @@ pub(super) struct RewriteArgs {
     #[arg(long, num_args = 2, value_names = ["FROM", "TO"], value_parser = moment_in_seconds, requires = "out",
         conflicts_with_all = ["watch", "at", "event", "problems", "team", "check", "compare", "json", "join", "export"])]
     cut: Option<Vec<f64>>,
-    /// Write the packets of FILE, then those of these recordings, to the league log file --out; one that begins
-    /// before the end of the one before it is moved to 1 s after it.
+    /// Write the packets of FILE, then those of these recordings, to the league log file --out; one that
+    /// begins before the end of the one before it is moved to 1 s after it.
     #[arg(long, num_args = 1.., value_name = "FILE", requires = "out",
         conflicts_with_all = ["watch", "at", "event", "problems", "team", "check", "compare", "json", "export"])]
     join: Option<Vec<PathBuf>>,

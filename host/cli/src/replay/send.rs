@@ -22,9 +22,9 @@ use crate::stop::stopped_by_hand;
 /// Where packets are sent to, and how fast.
 #[derive(Debug, Args)]
 pub(super) struct SendArgs {
-    /// Send the recording's packets of vision, referee and trackers to the network again, byte for byte and at
-    /// their own times: to the league's groups and ports, or with HOST to the same ports of a machine or group;
-    /// with --at from that moment on.
+    /// Send the recording's packets of vision, referee and trackers to the network again, byte for byte and
+    /// at their own times: to the league's groups and ports, or with HOST to the same ports of a machine or
+    /// group; with --at from that moment on.
     #[arg(long, value_name = "HOST", num_args = 0..=1, value_parser = machine,
         conflicts_with_all = ["watch", "event", "problems", "team", "check", "compare", "cut", "join", "export"])]
     send: Option<Option<IpAddr>>,

@@ -1,5 +1,5 @@
-//! `rows`: a recording as a table: the tracked field and the referee, one row a time, columns with their units
-//! in their names (docs/case-format.md §5.4). m, m/s, rad, rad/s, s, field frame.
+//! `rows`: a recording as a table: the tracked field and the referee, one row a time, columns with their
+//! units in their names (docs/case-format.md §5.4). m, m/s, rad, rad/s, s, field frame.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -65,6 +65,11 @@ impl<'f> Rows<'f> {
     /// Damage of the file, if it is not whole; known after the last row.
     pub fn damage(&self) -> Option<String> {
         self.packets.damage()
+    }
+
+    /// Whether a packet of the recorded tracker that is to be read was found so far.
+    pub const fn follows_tracker(&self) -> bool {
+        self.followed.is_some()
     }
 
     /// Takes a packet; returns a row where it changed the tracked field, or told events.
