@@ -85,9 +85,7 @@ pub(super) fn run(args: &ReplayArgs, form: TableForm) -> Result<ExitCode, Failur
             }
             FieldSource::Recorded(_) => format!("no tracker of that name; it has {}", names(&first)),
         };
-        return Err(
-            ExportError::Nothing { file: foreign::printable_path(&args.file).to_string(), what }.into()
-        );
+        return Err(ExportError::Nothing { file: foreign::printable_path(&args.file), what }.into());
     }
     let kind = if form == TableForm::Csv { FileKind::Csv } else { FileKind::Json };
     if let Some(out) = &args.out {

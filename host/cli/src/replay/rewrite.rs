@@ -64,7 +64,7 @@ pub(super) fn run(args: &ReplayArgs, out: &Path) -> Result<ExitCode, Failure> {
         return Err(RewriteError::Backwards(from_s, to_s).into());
     }
     let name = out.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if !name.ends_with(".log") && !name.ends_with(".log.gz") {
+    if ![".log", ".log.gz"].iter().any(|ending| name.ends_with(ending)) {
         return Err(RewriteError::Name(out.to_owned()).into());
     }
     let files: Vec<&Path> =

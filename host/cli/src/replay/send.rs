@@ -27,6 +27,7 @@ pub(super) struct SendArgs {
     /// group; with --at from that moment on.
     #[arg(long, value_name = "HOST", num_args = 0..=1, value_parser = machine,
         conflicts_with_all = ["watch", "event", "problems", "team", "check", "compare", "cut", "join", "export"])]
+    #[expect(clippy::option_option, reason = "clap's form of a flag with an optional value")]
     send: Option<Option<IpAddr>>,
     /// Send vision there instead.
     #[arg(long, value_name = "HOST:PORT", value_parser = destination, requires = "send")]
