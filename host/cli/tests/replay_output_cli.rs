@@ -1,5 +1,4 @@
-//! `recordings_out_cli`: tests of `onetwo replay` where a recording leaves again: to the network, as a log
-//! file, as a table.
+//! `replay_output_cli`: tests of `onetwo replay` with `--send`, `--cut`, `--join` and `--export`.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -34,7 +33,7 @@ fn recording(name: &str) -> String {
 }
 
 fn scratch(name: &str) -> String {
-    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("recordings-out");
+    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("replay-output");
     fs::create_dir_all(&directory).expect("a directory");
     directory.join(name).display().to_string()
 }
@@ -43,7 +42,7 @@ fn records(file: &str) -> Vec<Record> {
     open(Path::new(file)).expect("a log").collect()
 }
 
-/// Everything that comes to a port of this machine until it is silent for 3 s.
+/// All packets that a port of this host receives until it is silent for 3 s.
 fn listen() -> (String, thread::JoinHandle<Vec<Vec<u8>>>) {
     let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
     let address = socket.local_addr().expect("its address").to_string();
@@ -65,7 +64,7 @@ fn payloads(records: &[Record], kind: MessageKind) -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn a_log_sent_out_again_gives_receivers_the_same_bytes_at_its_times() {
+fn a_replayed_log_reaches_receivers_byte_for_byte_with_its_timing() {
     let file = recording("grsim_divB_22s.log.gz");
     let ((vision, seen), (referee, heard)) = (listen(), listen());
     let began = Instant::now();
@@ -98,7 +97,7 @@ fn a_log_sent_out_again_gives_receivers_the_same_bytes_at_its_times() {
 }
 
 #[test]
-fn a_part_cut_out_and_joined_again_is_the_whole() {
+fn two_parts_of_a_log_joined_are_the_whole() {
     let file = recording("grsim_divB_22s.log.gz");
     let [first, second, whole] = ["first.log", "second.log.gz", "whole.log.gz"].map(scratch);
     done(&[&file, "--cut", "0", "8", "--out", &first]);
@@ -112,11 +111,11 @@ fn a_part_cut_out_and_joined_again_is_the_whole() {
 }
 
 #[test]
-fn a_joined_file_that_begins_too_early_is_moved_and_told() {
+fn a_joined_file_that_starts_too_early_is_shifted_and_reported() {
     let (file, out) = (recording("grsim_divB_22s.log.gz"), scratch("twice.log.gz"));
     let printed = replay(&[&file, "--join", &file, "--out", &out]);
     assert_eq!(printed.status.code(), Some(0));
-    assert!(String::from_utf8_lossy(&printed.stderr).contains("moved by"));
+    assert!(String::from_utf8_lossy(&printed.stderr).contains("shifted by"));
     let (once, twice) = (records(&file), records(&out));
     assert_eq!(twice.len(), 2 * once.len());
     assert!(once.iter().zip(&twice[once.len()..]).all(|(a, b)| a.payload == b.payload));
@@ -125,7 +124,7 @@ fn a_joined_file_that_begins_too_early_is_moved_and_told() {
 }
 
 #[test]
-fn a_table_says_what_a_moment_says_and_both_forms_are_one() {
+fn a_table_agrees_with_a_moment_and_csv_with_jsonl() {
     let (file, out) = (recording("erforce_divB_realistic_22s.log.gz"), scratch("field.csv"));
     done(&[&file, "--export", "csv", "--out", &out]);
     let mut table = csv::Reader::from_path(&out).expect("a table");
@@ -157,16 +156,32 @@ fn a_table_says_what_a_moment_says_and_both_forms_are_one() {
         }
     }
     let summary: Value = serde_json::from_str(&done(&[&file, "--json"])).expect("JSON");
-    let told: usize = rows
+    let exported: usize = rows
         .iter()
         .filter(|row| !row["events"].is_empty())
         .map(|row| row["events"].split("; ").count())
         .sum();
-    assert_eq!(told, summary["happenings"].as_array().expect("events").len());
+    assert_eq!(exported, summary["happenings"].as_array().expect("events").len());
 }
 
 #[test]
-fn what_cannot_be_done_is_refused_and_destroys_nothing() {
+fn of_a_damaged_file_what_can_be_read_is_joined_and_the_damage_is_reported() {
+    let (file, cut, out) = (recording("grsim_divB_22s.log.gz"), scratch("cut.log"), scratch("joined.log"));
+    done(&[&file, "--cut", "0", "2", "--out", &cut]);
+    let (bytes, whole) = (fs::read(&cut).expect("a log"), records(&cut));
+    // The header and a few bytes of the first message, or half of all.
+    for length in [20, bytes.len() / 2] {
+        let damaged = scratch("damaged.log");
+        fs::write(&damaged, &bytes[..length]).expect("a copy");
+        let left = records(&damaged).len();
+        let error = refused(&[&damaged, "--join", &cut, "--out", &out], 1);
+        assert!(error.contains("damaged.log"), "{length}: {error}");
+        assert_eq!(records(&out).len(), left + whole.len(), "{length}: {error}");
+    }
+}
+
+#[test]
+fn a_refused_command_leaves_all_files_intact() {
     let (file, copy) = (recording("grsim_divB_22s.log.gz"), scratch("copy.log.gz"));
     fs::copy(&file, &copy).expect("a copy");
     assert!(refused(&[&copy, "--cut", "0", "1", "--out", &copy], 1).contains("copy.log.gz"));
@@ -177,11 +192,12 @@ fn what_cannot_be_done_is_refused_and_destroys_nothing() {
             .contains("no packet from 50 s")
     );
     assert!(
-        refused(&[&file, "--cut", "0", "1", "--out", &scratch("none.txt")], 1).contains(".log or .log.gz")
+        refused(&[&file, "--cut", "0", "1", "--out", &scratch("none.txt")], 1)
+            .contains("must end in .log or .log.gz")
     );
     assert!(refused(&[&file, "--send", "127.0.0.1", "--at", "99"], 1).contains("it ends after"));
-    let nobody = ["--export", "csv", "--tracked", "recorded", "--tracker-name", "nobody"];
-    assert!(refused(&[&[&*file], &nobody[..]].concat(), 1).contains("no tracker of that name; it has"));
+    let absent = ["--export", "csv", "--tracked", "recorded", "--tracker-name", "absent"];
+    assert!(refused(&[&[&*file], &absent[..]].concat(), 1).contains("no tracker of that name; it has"));
     for usage in
         [&["--cut", "0", "1"][..], &["--out", "x.csv"], &["--speed", "2"], &["--send", "127.0.0.1:1"]]
     {
