@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use feed::recording::{FieldSource, RecordedError, Row, Rows, columns, in_file};
+use serde::Serializer as _;
 use serde_json::Value;
 use thiserror::Error;
 
@@ -17,8 +18,8 @@ use crate::output::{lines, note};
 /// Form of the table, and where its positions come from.
 #[derive(Debug, Args)]
 pub(super) struct ExportArgs {
-    /// Print the tracked field, the referee and events as a table, one row a time: columns with units in
-    /// their names; with --out into a file.
+    /// Print the tracked field, the referee and events as a table, one row per time stamp, columns with
+    /// units in their names; with --out, write it to a file.
     #[arg(long, value_name = "FORM", value_enum,
         conflicts_with_all = ["watch", "at", "event", "problems", "team", "check", "compare", "json"])]
     export: Option<TableForm>,
@@ -34,9 +35,9 @@ pub(super) struct ExportArgs {
 /// Form of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum TableForm {
-    /// A head line with the names of columns, then a line for each row.
+    /// A header with the names of columns, then a line per row.
     Csv,
-    /// A JSON object for each row, one a line.
+    /// A JSON object per row, one per line.
     Jsonl,
 }
 
@@ -103,7 +104,10 @@ pub(super) fn run(args: &ReplayArgs, form: TableForm) -> Result<ExitCode, Failur
         && first.trackers.len() > 1
         && args.export.tracker_name.is_none()
     {
-        note!("several trackers in it, the first is read: {}; choose with --tracker-name", names(&first));
+        note!(
+            "it has packets of several trackers, of which the first is exported: {}; choose with --tracker-name",
+            names(&first)
+        );
     }
     let damage = first.damage().map(RecordedError::Damaged);
     let undecodable = (first.undecodable > 0)
@@ -128,9 +132,8 @@ fn write(
 ) -> std::io::Result<()> {
     if form == TableForm::Jsonl {
         for row in rows {
-            // Names of columns are ours: letters, digits and `_`.
-            let cells: Vec<_> = row.iter().map(|(name, value)| format!("\"{name}\":{value}")).collect();
-            writeln!(out, "{{{}}}", cells.join(","))?;
+            serde_json::Serializer::new(&mut out).collect_map(row)?;
+            writeln!(out)?;
         }
         return out.flush();
     }
