@@ -1,5 +1,5 @@
 //! `onetwo replay`: contents of a recorded match, the field at a moment, and whether the host decides the
-//! same again; its packets to the network again, parts of it as log files, and tables.
+//! same again; replay to the network, log files of its parts, and tables.
 //!
 //! Two kinds of files, distinguished by their first bytes: the league's log files (of any team) and traces of
 //! ours (docs/architecture.md §7.4).

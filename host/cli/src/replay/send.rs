@@ -1,4 +1,4 @@
-//! `send`: a recording's packets go out to the network again, byte for byte, at their own times.
+//! `send`: replays a recording's packets to the network, byte for byte, with their original timing.
 
 use std::collections::BTreeMap;
 use std::net::{IpAddr, SocketAddr};
@@ -22,26 +22,26 @@ use crate::stop::stopped_by_hand;
 /// Where packets are sent to, and how fast.
 #[derive(Debug, Args)]
 pub(super) struct SendArgs {
-    /// Send the recording's packets of vision, referee and trackers to the network again, byte for byte and
-    /// at their own times: to the league's groups and ports, or with HOST to the same ports of a machine or
-    /// group; with --at from that moment on.
+    /// Replay the recording's packets of vision, referee and trackers to the network, byte for byte and with
+    /// their original timing: to the league's groups and ports, or with HOST to the same ports of a host or
+    /// multicast group; with --at, from that moment on.
     #[arg(long, value_name = "HOST", num_args = 0..=1, value_parser = machine,
         conflicts_with_all = ["watch", "event", "problems", "team", "check", "compare", "cut", "join", "export"])]
     #[expect(clippy::option_option, reason = "clap's form of a flag with an optional value")]
     send: Option<Option<IpAddr>>,
-    /// Send vision there instead.
+    /// Send vision to this address instead.
     #[arg(long, value_name = "HOST:PORT", value_parser = destination, requires = "send")]
     vision: Option<SocketAddr>,
-    /// Send the referee there instead.
+    /// Send the referee's packets to this address instead.
     #[arg(long, value_name = "HOST:PORT", value_parser = destination, requires = "send")]
     referee: Option<SocketAddr>,
-    /// Send packets of trackers there instead.
+    /// Send trackers' packets to this address instead.
     #[arg(long, value_name = "HOST:PORT", value_parser = destination, requires = "send")]
     tracker: Option<SocketAddr>,
-    /// Recorded seconds a second, 0.05 to 20.
+    /// Playback speed, 0.05 to 20; 1 is real time.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = match_speed, requires = "send")]
     speed: f32,
-    /// The interface that multicast leaves by, its name or address; the system's choice by default.
+    /// Network interface for multicast, by name or address; by default the system chooses.
     #[arg(long, value_name = "NAME", requires = "send")]
     interface: Option<String>,
 }
@@ -55,7 +55,7 @@ struct Report {
     to_s: f64,
     /// By the name of the message.
     sent: BTreeMap<&'static str, Channel>,
-    /// Number of messages of kinds that no program of the league receives.
+    /// Number of messages that belong to no channel of the league's network.
     left_out: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
     damage: Option<String>,
@@ -88,12 +88,12 @@ impl Channel {
 }
 
 impl SendArgs {
-    /// Whether packets are to be sent at all.
+    /// Whether packets are to be sent.
     pub(super) const fn is_wanted(&self) -> bool {
         self.send.is_some()
     }
 
-    /// The name and the destination of a packet; `None` for one that no program receives.
+    /// The name and the destination of a packet; `None` for one of no channel of the league's network.
     fn channel(&self, packet: &LeaguePacket) -> Option<(&'static str, SocketAddr)> {
         let kind = match packet.kind {
             MessageKind::Unknown => guess(&packet.bytes)?,
@@ -131,11 +131,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         }
         let pace = pace.get_or_insert_with(|| {
             report.from_s = last_us as f64 * 1e-6;
-            note!(
-                "sending from {:.3} s at {} × the recording's time, until Ctrl-C",
-                report.from_s,
-                args.send.speed
-            );
+            note!("sending from {:.3} s at {} × real time; Ctrl-C stops", report.from_s, args.send.speed);
             Pace { start: Instant::now(), start_us: last_us, speed: args.send.speed }
         });
         pace.wait_until(last_us);
@@ -170,7 +166,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Times of packets on this computer's clock.
+/// Schedule of packets on this computer's clock.
 struct Pace {
     start: Instant,
     /// Time of the first packet, µs.
@@ -179,8 +175,8 @@ struct Pace {
 }
 
 impl Pace {
-    /// Waits until a packet is due. Where sending stood (the program was suspended), what is due later moves:
-    /// packets come at their distances, not all at once.
+    /// Waits until a packet is due. After a suspension of the program the schedule is shifted, so that
+    /// packets keep their intervals instead of leaving in a burst.
     fn wait_until(&mut self, at_us: u64) {
         let since_s = at_us.saturating_sub(self.start_us) as f64 * 1e-6 / f64::from(self.speed);
         let due = self.start + Duration::from_secs_f64(since_s);
@@ -212,7 +208,7 @@ impl Report {
     }
 }
 
-/// Longest sleep between two looks for Ctrl-C: no operator notices the delay.
+/// Longest sleep between two checks for Ctrl-C: no operator notices the delay.
 const WAIT_MAX: Duration = Duration::from_millis(100);
 /// A packet that is later than this was held up by a suspended program, not by the scheduler: loops of the
 /// league's programs are 10 to 20 ms, and a loaded machine delays by 100 ms.

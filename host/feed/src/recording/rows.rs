@@ -1,4 +1,4 @@
-//! `rows`: a recording as a table: the tracked field and the referee, one row a time, columns with their
+//! `rows`: a recording as a table: the tracked field and the referee, one row per time stamp, columns with
 //! units in their names (docs/case-format.md §5.4). m, m/s, rad, rad/s, s, field frame.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,7 +26,7 @@ pub enum FieldSource {
     Recorded(Option<String>),
 }
 
-/// One time of the table: its cells by the names of their columns, in order; unknown ones are left out.
+/// A row: its cells with the names of their columns, in order; unknown values are left out.
 pub type Row = Vec<(String, Value)>;
 
 /// Reads the rows of a recording, an iterator.
@@ -72,7 +72,7 @@ impl<'f> Rows<'f> {
         self.followed.is_some()
     }
 
-    /// Takes a packet; returns a row where it changed the tracked field, or told events.
+    /// Reads a packet; returns a row where it updated the tracked field or reported events.
     fn read(&mut self, packet: LeaguePacket) -> Option<Row> {
         let (at, unix_ns) = (packet.at, packet.unix_ns);
         let record = Record { timestamp_ns: unix_ns, kind: packet.kind, payload: packet.bytes };
@@ -112,7 +112,7 @@ impl<'f> Rows<'f> {
         is_row.then(|| self.row(at, unix_ns, &events))
     }
 
-    /// Whether this recorded tracker is the one that is read; the first one asked for is from then on.
+    /// Whether this recorded tracker is the one that is read: the first that matches is kept from then on.
     fn follows(&mut self, uuid: &str, name: &str) -> bool {
         if let Some(followed) = &self.followed {
             return followed == uuid;
@@ -215,7 +215,7 @@ fn robot_columns(colour: Colour, id: u32) -> String {
     format!("{}_{id}", colour.label())
 }
 
-/// The field by a tracker in the recording; of a robot that it names twice the first.
+/// The field by a tracker in the recording; of a robot that is in a frame twice, the first entry.
 fn recorded(frame: &TrackedFrame, put: &mut Cells<'_>) {
     if let Some(ball) = frame.balls.first() {
         let velocity = ball.vel.map_or([None; 3], |vel| [vel.x, vel.y, vel.z].map(Some));
@@ -257,7 +257,7 @@ impl Cells<'_> {
         }
     }
 
-    /// Cells of one thing; numbers to 0.1 mm.
+    /// Cells of the ball or a robot, rounded to 0.1 mm, 0.1 mm/s and 0.1 mrad.
     fn group<const N: usize>(
         &mut self,
         of: &str,
