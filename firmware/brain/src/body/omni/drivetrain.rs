@@ -164,10 +164,11 @@ impl Drivetrain {
             around.leave_out_far();
         }
         // Too little for all that is around: the path of a few steps before has looked at all of it.
-        if effort < search_effort(around.obstacles.len()) && path_age < PATH_AGE_MAX {
+        // A robot that this path leaves where it is has nothing to keep.
+        let on = under_way.and_then(|path| path.towards).filter(|to| to.distance(from) > AT_PLACE);
+        if effort < search_effort(around.obstacles.len()) && path_age < PATH_AGE_MAX && on.is_some() {
             self.path_age = path_age;
-            let towards = under_way.and_then(|path| path.towards);
-            return self.keep_path(belief, step, CurrentPath { drive: *drive, towards });
+            return self.keep_path(belief, step, CurrentPath { drive: *drive, towards: on });
         }
         // Where the effort is too small for all robots the drive only slows down for those far away.
         while effort < search_effort(around.obstacles.len()) && around.leave_out_farthest(from) {}
@@ -181,6 +182,7 @@ impl Drivetrain {
             limits: limits(belief, drive),
             obstacles: &around.obstacles,
             within: Some(around.within),
+            straight_on: belief.game.phase == Phase::Run,
             step,
             effort,
         };
