@@ -21,7 +21,7 @@ const PROGRAM_MAX: u64 = 20_000_000;
 
 /// Counts and weighs.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
-    let mut tree = context.cargo("tree --locked -p onetwo -e normal,build --prefix none --no-dedupe");
+    let mut tree = context.cargo("tree --locked -e normal,build --prefix none --no-dedupe");
     let crates = crates(&output_of(&mut tree)?);
     run(&mut context.cargo("build --release --bin onetwo"))?;
     let built = firmware_build::target_dir(context.root());
@@ -50,7 +50,7 @@ fn faults(crates: &BTreeSet<(String, String)>, size: u64) -> Vec<String> {
     let mut faults = Vec::new();
     if crates.len() > CRATES_MAX {
         faults.push(format!(
-            "{} crates of at most {CRATES_MAX}; `cargo tree -p onetwo -e normal,build` shows what brings them: \
+            "{} crates of at most {CRATES_MAX}; `cargo tree -e normal,build` shows what brings them: \
              do without, or put what few need behind a feature as `png` is",
             crates.len()
         ));

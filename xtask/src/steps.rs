@@ -103,7 +103,7 @@ fn qemu(context: &Context) -> Result<(), Failure> {
     images::check(context)?;
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
     emulate::on_target(context, &[])?;
-    run(&mut context.cargo("test --release --no-fail-fast --test qemu_*"))
+    run(&mut context.cargo("test --release --no-fail-fast -p onetwo -p match-tests --test qemu_*"))
 }
 
 /// Everything but the upload and the build of what was packed, which takes a debug build of each package;
