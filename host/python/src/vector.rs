@@ -1,5 +1,8 @@
 //! `vector`: many episodes of the same settings, stepped by one call on several threads.
 
+use std::sync::Mutex;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -18,8 +21,9 @@ type Pickle<'py> = (Bound<'py, PyAny>, (Bound<'py, PyBytes>, usize));
 #[pyclass(module = "onetwo")]
 pub struct VectorSimulator {
     settings: Settings,
-    threads: usize,
-    slots: Vec<Slot>,
+    shares: Vec<Share>,
+    /// One for each share but the first, which the caller's thread steps.
+    workers: Vec<Worker>,
     actions: Vec<f32>,
     observations: Vec<f32>,
 }
@@ -30,6 +34,20 @@ struct Slot {
     /// It is started again from this seed, and not stepped.
     restart: Option<u64>,
     error: Option<String>,
+}
+
+/// The episodes that one thread steps, with their actions and observations.
+#[derive(Default)]
+struct Share {
+    slots: Vec<Slot>,
+    actions: Vec<f32>,
+    observations: Vec<f32>,
+}
+
+/// A thread that steps the shares that it is sent, and sends them back; it ends with this value.
+struct Worker {
+    to: Sender<Share>,
+    back: Mutex<Receiver<Share>>,
 }
 
 #[pymethods]
@@ -48,7 +66,7 @@ impl VectorSimulator {
         let settings = simulator.borrow().settings().clone();
         let start = |seed| Episode::start(settings.clone(), seed);
         let episodes = py.detach(|| (0..count as u64).map(start).collect::<Result<Vec<_>, _>>());
-        Ok(Self::of(episodes.map_err(failed)?, settings.clone(), threads))
+        Self::of(episodes.map_err(failed)?, settings.clone(), threads)
     }
 
     /// Starts the listed episodes again, each from its seed, and steps all others. Writes the observations, the
@@ -63,48 +81,47 @@ impl VectorSimulator {
         ends: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
         read_actions("actions", actions, &mut self.actions)?;
+        let share_len = self.shares.first().map_or(1, |share| share.slots.len().max(1));
+        let count = self.count();
         for (index, seed) in restarts {
-            let count = self.slots.len();
-            let slot = self.slots.get_mut(index);
+            let share = self.shares.get_mut(index / share_len);
+            let slot = share.and_then(|share| share.slots.get_mut(index % share_len));
             slot.ok_or_else(|| refused(format!("restarts: index {index} of {count} episodes")))?.restart =
                 Some(seed);
         }
-        py.detach(|| self.step_all());
-        if let Some(error) = self.slots.iter_mut().find_map(|slot| slot.error.take()) {
-            return Err(failed(error));
-        }
+        py.detach(|| self.step_all()).map_err(failed)?;
         write("observations", observations, &self.observations)?;
         let of = |slot: &Slot| slot.episode.state.reward;
-        write("rewards", rewards, &self.slots.iter().map(of).collect::<Vec<f32>>())?;
+        write("rewards", rewards, &self.slots().map(of).collect::<Vec<f32>>())?;
         let of = |slot: &Slot| slot.episode.state.end.map_or(0, |end| 1 + end as u8);
-        write("ends", ends, &self.slots.iter().map(of).collect::<Vec<u8>>())
+        write("ends", ends, &self.slots().map(of).collect::<Vec<u8>>())
     }
 
     /// The simulated time of each episode, s.
     fn times_s(&self) -> Vec<f64> {
-        self.slots.iter().map(|slot| slot.episode.state.time_s()).collect()
+        self.slots().map(|slot| slot.episode.state.time_s()).collect()
     }
 
     /// Whether each episode has ended.
     fn ended(&self) -> Vec<bool> {
-        self.slots.iter().map(|slot| slot.episode.state.end.is_some()).collect()
+        self.slots().map(|slot| slot.episode.state.end.is_some()).collect()
     }
 
     /// The whole state of all episodes as bytes.
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let episodes: Vec<Saved> = self.slots.iter().map(|slot| slot.episode.saved()).collect();
+        let episodes: Vec<Saved> = self.slots().map(|slot| slot.episode.saved()).collect();
         Ok(PyBytes::new(py, &saved(&(&self.settings, episodes))?))
     }
 
     /// Goes on from a saved state with the same settings and number of episodes.
     fn restore(&mut self, py: Python<'_>, state: &Bound<'_, PyAny>) -> PyResult<()> {
-        let other = vector_of(py, bytes_of(state)?, self.threads)?;
-        if other.settings != self.settings || other.slots.len() != self.slots.len() {
+        let other = vector_of(py, bytes_of(state)?, self.shares.len())?;
+        if other.settings != self.settings || other.count() != self.count() {
             return Err(refused(format!(
                 "state: {} episodes with {:?}; these are {} with {:?}",
-                other.slots.len(),
+                other.count(),
                 other.settings,
-                self.slots.len(),
+                self.count(),
                 self.settings
             )));
         }
@@ -113,14 +130,13 @@ impl VectorSimulator {
     }
 
     fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let copies =
-            py.detach(|| self.slots.iter().map(|slot| slot.episode.copy()).collect::<Result<_, _>>());
-        Ok(Self::of(copies.map_err(failed)?, self.settings.clone(), self.threads))
+        let copies = py.detach(|| self.slots().map(|slot| slot.episode.copy()).collect::<Result<_, _>>());
+        Self::of(copies.map_err(failed)?, self.settings.clone(), self.shares.len())
     }
 
     /// A pickle holds the saved state.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Pickle<'py>> {
-        Ok((py.import("onetwo._native")?.getattr("_vector")?, (self.save(py)?, self.threads)))
+        Ok((py.import("onetwo._native")?.getattr("_vector")?, (self.save(py)?, self.shares.len())))
     }
 
     /// Names of the ends, by their numbers; None while an episode goes on.
@@ -137,48 +153,99 @@ impl VectorSimulator {
 }
 
 impl VectorSimulator {
-    fn of(episodes: Vec<Episode>, settings: Settings, threads: usize) -> Self {
-        let slot = |episode| Slot { episode, restart: None, error: None };
-        Self {
-            actions: vec![0.0; episodes.len() * settings.action_len(Colour::Blue)],
-            observations: vec![0.0; episodes.len() * settings.observation_len()],
-            slots: episodes.into_iter().map(slot).collect(),
-            threads: threads.max(1),
-            settings,
+    fn of(episodes: Vec<Episode>, settings: Settings, threads: usize) -> PyResult<Self> {
+        let (count, action_len) = (episodes.len(), settings.action_len(Colour::Blue));
+        let observation_len = settings.observation_len();
+        let mut shares: Vec<Share> = Vec::new();
+        for (n, episode) in episodes.into_iter().enumerate() {
+            if n % count.div_ceil(threads.max(1)) == 0 {
+                shares.push(Share::default());
+            }
+            let Some(share) = shares.last_mut() else { continue };
+            share.slots.push(Slot { episode, restart: None, error: None });
+            share.actions.resize(action_len * share.slots.len(), 0.0);
+            share.observations.resize(observation_len * share.slots.len(), 0.0);
         }
+        let workers = shares.iter().skip(1).map(|_| Worker::start()).collect::<Result<_, _>>();
+        Ok(Self {
+            workers: workers.map_err(failed)?,
+            actions: vec![0.0; count * action_len],
+            observations: vec![0.0; count * observation_len],
+            shares,
+            settings,
+        })
     }
 
-    /// One share of the episodes on this thread, the others on one each.
-    fn step_all(&mut self) {
-        let (action_len, observation_len) =
-            (self.settings.action_len(Colour::Blue), self.settings.observation_len());
-        let share = self.slots.len().div_ceil(self.threads);
-        let shares = self.slots.chunks_mut(share).zip(self.actions.chunks(share * action_len));
-        let mut shares = shares.zip(self.observations.chunks_mut(share * observation_len));
-        std::thread::scope(|scope| {
-            let first = shares.next();
-            for ((slots, actions), observations) in shares {
-                scope.spawn(move || step_share(slots, actions, observations));
-            }
-            if let Some(((slots, actions), observations)) = first {
-                step_share(slots, actions, observations);
-            }
-        });
+    fn slots(&self) -> impl Iterator<Item = &Slot> {
+        self.shares.iter().flat_map(|share| &share.slots)
+    }
+
+    fn count(&self) -> usize {
+        self.slots().count()
+    }
+
+    /// Steps the first share on this thread, the others on one each; the first error, if there is any.
+    fn step_all(&mut self) -> Result<(), String> {
+        let (mut actions, mut observations) = (&self.actions[..], &mut self.observations[..]);
+        for share in &mut self.shares {
+            let len = share.actions.len();
+            share.actions.copy_from_slice(&actions[..len]);
+            actions = &actions[len..];
+        }
+        let (first, others) = self.shares.split_at_mut(1);
+        for (share, worker) in others.iter_mut().zip(&self.workers) {
+            worker.to.send(std::mem::take(share)).map_err(|_| ENDED)?;
+        }
+        first.iter_mut().for_each(Share::step);
+        for (share, worker) in others.iter_mut().zip(&self.workers) {
+            *share = worker.back.lock().map_err(|_| ENDED)?.recv().map_err(|_| ENDED)?;
+        }
+        for share in &self.shares {
+            let (into, rest) = observations.split_at_mut(share.observations.len());
+            into.copy_from_slice(&share.observations);
+            observations = rest;
+        }
+        let mut slots = self.shares.iter_mut().flat_map(|share| &mut share.slots);
+        slots.find_map(|slot| slot.error.take()).map_or(Ok(()), Err)
     }
 }
 
-fn step_share(slots: &mut [Slot], actions: &[f32], observations: &mut [f32]) {
-    let count = slots.len();
-    let actions = actions.chunks_exact(actions.len() / count);
-    let observations = observations.chunks_exact_mut(observations.len() / count);
-    for ((slot, action), observation) in slots.iter_mut().zip(actions).zip(observations) {
-        let done = match slot.restart.take() {
-            Some(seed) => Episode::start(slot.episode.state.settings.clone(), seed)
-                .map(|episode| slot.episode = episode),
-            None => slot.episode.step(action, &[]),
+impl Worker {
+    fn start() -> Result<Self, String> {
+        let (to, inbox) = channel::<Share>();
+        let (outbox, back) = channel();
+        let body = move || {
+            for mut share in inbox {
+                share.step();
+                if outbox.send(share).is_err() {
+                    break;
+                }
+            }
         };
-        slot.error = done.err();
-        slot.episode.state.observe(View { side: Colour::Blue, first: 0 }, observation);
+        let thread = std::thread::Builder::new().name("onetwo vector".to_owned());
+        thread.spawn(body).map_err(|error| format!("no thread for episodes: {error}"))?;
+        Ok(Self { to, back: Mutex::new(back) })
+    }
+}
+
+impl Share {
+    fn step(&mut self) {
+        let count = self.slots.len().max(1);
+        let (action_len, observation_len) = (self.actions.len() / count, self.observations.len() / count);
+        let actions = self.actions.chunks_exact(action_len);
+        let observations = self.observations.chunks_exact_mut(observation_len);
+        for ((slot, action), observation) in self.slots.iter_mut().zip(actions).zip(observations) {
+            slot.error = slot.step(action).err();
+            slot.episode.state.observe(View { side: Colour::Blue, first: 0 }, observation);
+        }
+    }
+}
+
+impl Slot {
+    fn step(&mut self, action: &[f32]) -> Result<(), String> {
+        let Some(seed) = self.restart.take() else { return self.episode.step(action, &[]) };
+        self.episode = Episode::start(self.episode.state.settings.clone(), seed)?;
+        Ok(())
     }
 }
 
@@ -195,8 +262,9 @@ fn vector_of(py: Python<'_>, state: &[u8], threads: usize) -> PyResult<VectorSim
     if episodes.is_empty() || episodes.iter().any(|episode| episode.state.settings != settings) {
         return Err(refused("state: damaged: its episodes do not fit its settings"));
     }
-    Ok(VectorSimulator::of(episodes, settings, threads))
+    VectorSimulator::of(episodes, settings, threads)
 }
 
+const ENDED: &str = "a thread of the vector has ended; make another vector";
 /// Most episodes of a vector: 100 MB of worlds, an estimate.
 const COUNT_MAX: usize = 10_000;
