@@ -83,7 +83,7 @@ impl Episode {
         for _ in 0..state.settings.period_ms / TICK_MS {
             let judgement = computers.tick(&mut state.world)?;
             if state.settings.task.spec().referee {
-                state.hear(judgement);
+                state.take(judgement);
             }
             state.end = state.judge();
             if state.end.is_some() {

@@ -120,7 +120,7 @@ impl State {
     }
 
     /// Takes the referee's view of a tick.
-    pub fn hear(&mut self, judgement: Judgement) {
+    pub fn take(&mut self, judgement: Judgement) {
         (self.score, self.in_play, self.restart) = (judgement.score, judgement.in_play, judgement.restart);
     }
 

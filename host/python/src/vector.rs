@@ -154,11 +154,14 @@ impl VectorSimulator {
 
 impl VectorSimulator {
     fn of(episodes: Vec<Episode>, settings: Settings, threads: usize) -> PyResult<Self> {
+        if !(1..=THREADS_MAX).contains(&threads) {
+            return Err(refused(format!("threads {threads}: take 1 to {THREADS_MAX} threads")));
+        }
         let (count, action_len) = (episodes.len(), settings.action_len(Colour::Blue));
         let observation_len = settings.observation_len();
         let mut shares: Vec<Share> = Vec::new();
         for (n, episode) in episodes.into_iter().enumerate() {
-            if n % count.div_ceil(threads.max(1)) == 0 {
+            if n % count.div_ceil(threads) == 0 {
                 shares.push(Share::default());
             }
             let Some(share) = shares.last_mut() else { continue };
@@ -266,5 +269,7 @@ fn vector_of(py: Python<'_>, state: &[u8], threads: usize) -> PyResult<VectorSim
 }
 
 const ENDED: &str = "a thread of the vector has ended; make another vector";
+/// Most threads of a vector: more than processors of one machine help nothing.
+const THREADS_MAX: usize = 256;
 /// Most episodes of a vector: 100 MB of worlds, an estimate.
 const COUNT_MAX: usize = 10_000;

@@ -260,6 +260,7 @@ class Tasks(unittest.TestCase):
             ("render_mode", lambda: onetwo.env.TaskVectorEnv(2, render_mode="ansi")),
             ("count", lambda: onetwo.env.TaskVectorEnv(0)),
             ("threads", lambda: onetwo.env.TaskVectorEnv(2, threads=-1)),
+            ("threads", lambda: onetwo.env.TaskVectorEnv(2, threads=0)),
             ("seed", lambda: onetwo.env.TaskVectorEnv(2).reset(seed=[1])),
             ("actions", lambda: onetwo.env.TaskVectorEnv(2).step(np.zeros((3, 5)))),
             ("no agent", lambda: (env := TaskParallelEnv(), env.reset(), env.step({"own_7": np.zeros(5)}))),

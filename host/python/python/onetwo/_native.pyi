@@ -181,7 +181,7 @@ class VectorSimulator:
     """Names of the ends by the numbers that `step` writes; None for 0."""
 
     def __new__(cls, simulator: Simulator, count: int, threads: int) -> VectorSimulator:
-        """`count` episodes, 1 to 10,000, with the settings of `simulator`, from seeds 0 up; on at most `threads` threads."""
+        """`count` episodes, 1 to 10,000, with the settings of `simulator`, from seeds 0 up; on at most `threads` threads, 1 to 256."""
     def step(
         self,
         actions: Buffer | Sequence[float],

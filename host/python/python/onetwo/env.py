@@ -165,7 +165,7 @@ class TaskVectorEnv(VectorEnv):
             raise ValueError("render_mode: a vector environment renders nothing; take none")
         template = Simulator(**settings)
         self.num_envs = num_envs
-        self.simulators = VectorSimulator(template, num_envs, threads or os.cpu_count() or 1)
+        self.simulators = VectorSimulator(template, num_envs, os.cpu_count() or 1 if threads is None else threads)
         self.single_action_space = box(template.action_size)
         self.single_observation_space = box(template.observation_size)
         self.action_space = batch_space(self.single_action_space, num_envs)
