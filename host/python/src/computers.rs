@@ -1,5 +1,5 @@
-//! `computers`: a match's hosts, brains, cameras, radio and referee (`arena::game`) beside an episode's world, on
-//! a thread of their own. Ticks of 10 ms.
+//! `computers`: a match's hosts, brains, cameras, radio and referee (`arena::game`) beside an episode's
+//! world, on a thread of their own. Ticks of 10 ms.
 //!
 //! The world goes there and back with each tick, so that the episode orders and places robots as it does
 //! without computers. Robots that the caller moves have theirs switched off.
@@ -112,7 +112,8 @@ fn play(
     Ok(())
 }
 
-/// Robots and hosts get to know each other, standing; then ball and robots are placed and the ball is in play.
+/// Robots and hosts exchange their first packets, standing; then ball and robots are placed, and the ball is
+/// in play.
 fn warm_up(game: &mut Game<'_>, referee: &mut ManualReferee, places: &World) -> Result<(), GameError> {
     let teams = [Colour::Yellow, Colour::Blue];
     place(game, places);
@@ -190,7 +191,8 @@ pub fn are_needed(settings: &Settings) -> bool {
 const ENDED: &str = "the robots' computers have ended";
 /// Length of a tick, ms.
 pub const TICK_MS: u32 = 10;
-/// Before an episode: cameras' first frames, radio's handshake, and tracks that are sure; as case trials have.
+/// Before an episode: cameras' first frames, radio's handshake, and tracks that are sure; as case trials
+/// have.
 const WARM_UP_TICKS: u32 = 80;
 /// Time by which a half is longer than the episode, s.
 const HALF_SPARE_S: f64 = 60.0;

@@ -1,5 +1,5 @@
-//! `episode`: one attempt at a task in the Small Size simulator, in steps of one control period, and how it is
-//! saved.
+//! `episode`: one attempt at a task in the Small Size simulator, in steps of one control period, and how it
+//! is saved.
 
 use geometry::{Field, Pose};
 use hil_sim::TraceHash;

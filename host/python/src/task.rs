@@ -91,8 +91,8 @@ pub struct Reward {
 /// A place at the start.
 #[derive(Clone, Copy, Debug)]
 pub enum Place {
-    /// Anywhere in a rectangle, with any heading: shares of the way from the centre to the field's lines, from
-    /// and to.
+    /// Anywhere in a rectangle, with any heading: shares of the way from the centre to the field's lines,
+    /// from and to.
     Within([f32; 2], [f32; 2]),
     /// That far from the ball towards the own goal, facing it, m.
     BehindBall(f32),
@@ -117,8 +117,8 @@ impl Task {
     }
 }
 
-/// Goals and the way to them: a goal is worth more than any way across the field adds up to, m, and the ball's
-/// way to the goal more than a robot's to the ball.
+/// Goals and the way to them: a goal is worth more than any way across the field adds up to, m, and the
+/// ball's way to the goal more than a robot's to the ball.
 const SHOTS: Reward = Reward { to_goal: 1.0, to_ball: 0.5, goal: 10.0, ..NO_REWARD };
 const NO_REWARD: Reward = Reward {
     to_goal: 0.0,

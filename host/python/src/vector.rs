@@ -69,8 +69,8 @@ impl VectorSimulator {
         Self::of(episodes.map_err(failed)?, settings.clone(), threads)
     }
 
-    /// Starts the listed episodes again, each from its seed, and steps all others. Writes the observations, the
-    /// rewards and the number of the end of each episode; 0 while it goes on.
+    /// Starts the listed episodes again, each from its seed, and steps all others. Writes the observation, the
+    /// reward and the number of the end of each episode; 0 while it goes on.
     fn step(
         &mut self,
         py: Python<'_>,
@@ -91,10 +91,8 @@ impl VectorSimulator {
         }
         py.detach(|| self.step_all()).map_err(failed)?;
         write("observations", observations, &self.observations)?;
-        let of = |slot: &Slot| slot.episode.state.reward;
-        write("rewards", rewards, &self.slots().map(of).collect::<Vec<f32>>())?;
-        let of = |slot: &Slot| slot.episode.state.end.map_or(0, |end| 1 + end as u8);
-        write("ends", ends, &self.slots().map(of).collect::<Vec<u8>>())
+        write("rewards", rewards, &self.slots().map(|slot| slot.episode.state.reward).collect::<Vec<f32>>())?;
+        write("ends", ends, &self.slots().map(Slot::end_number).collect::<Vec<u8>>())
     }
 
     /// The simulated time of each episode, s.
@@ -245,6 +243,11 @@ impl Share {
 }
 
 impl Slot {
+    /// Number of its end in `ENDS`.
+    fn end_number(&self) -> u8 {
+        self.episode.state.end.map_or(0, |end| 1 + end as u8)
+    }
+
     fn step(&mut self, action: &[f32]) -> Result<(), String> {
         let Some(seed) = self.restart.take() else { return self.episode.step(action, &[]) };
         self.episode = Episode::start(self.episode.state.settings.clone(), seed)?;
