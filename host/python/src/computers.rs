@@ -46,14 +46,13 @@ impl Computers {
         let (worlds, inbox) = channel();
         let (outbox, ticks) = channel();
         let (settings, places) = (settings.clone(), world.clone());
-        let body = move || {
+        let thread = std::thread::Builder::new().name("onetwo computers".to_owned()).spawn(move || {
             if let Err(error) = play(&settings, seed, &places, &inbox, &outbox) {
                 // The episode may be gone already.
                 let _ = outbox.send(Err(error.to_string()));
             }
-        };
-        let thread = std::thread::Builder::new().name("onetwo computers".to_owned());
-        thread.spawn(body).map_err(|error| format!("no thread for the robots' computers: {error}"))?;
+        });
+        thread.map_err(|error| format!("no thread for the robots' computers: {error}"))?;
         let computers = Self { worlds, ticks: Mutex::new(ticks) };
         *world = computers.answer()?.0;
         Ok(computers)
@@ -68,8 +67,7 @@ impl Computers {
     }
 
     fn answer(&self) -> Tick {
-        let ended = || ENDED.to_owned();
-        self.ticks.lock().map_err(|_| ended())?.recv().map_err(|_| ended())?
+        self.ticks.lock().map_err(|_| ENDED)?.recv().map_err(|_| ENDED)?
     }
 }
 
@@ -182,10 +180,9 @@ fn judgement(game: &Game<'_>) -> Judgement {
 
 /// Whether these settings need computers.
 pub fn are_needed(settings: &Settings) -> bool {
-    let driven = |colour| settings.driver(colour).team().is_some();
     settings.task.spec().referee
-        || driven(Colour::Yellow)
-        || (driven(Colour::Blue) && settings.agents < settings.own)
+        || settings.opponents_by.team().is_some()
+        || (settings.teammates_by.team().is_some() && settings.agents < settings.own)
 }
 
 const ENDED: &str = "the robots' computers have ended";

@@ -58,9 +58,10 @@ impl Script {
         let ids = self.robots.clone().filter_map(|n| RobotId::new(n as u8));
         let players: Vec<Who> = ids.map(|id| Who { colour: self.colour, id }).collect();
         let ball = world.ball.position;
-        let distance = |who: &Who| world.robot(*who).map_or(f32::MAX, |r| r.pose.position.distance(ball));
         let field_players = players.iter().filter(|who| !self.keeps(**who));
-        let first = field_players.min_by(|a, b| distance(a).total_cmp(&distance(b))).copied();
+        let distances =
+            field_players.filter_map(|who| Some((who, world.robot(*who)?.pose.position.distance(ball))));
+        let first = distances.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(who, _)| *who);
         for (place, who) in players.into_iter().enumerate() {
             let Some(robot) = world.robot(who) else { continue };
             let order = if self.keeps(who) {

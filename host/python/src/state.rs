@@ -58,10 +58,9 @@ struct Scales {
 impl State {
     /// Ball and robots at the start; an error for a league without this simulator.
     pub fn start(settings: Settings, seed: u64) -> Result<Self, String> {
-        let no_simulator = || "that league has no simulator of wheeled robots".to_owned();
-        let parameters = Parameters::of(settings.league).ok_or_else(no_simulator)?;
+        let parameters = Parameters::of(settings.league).ok_or(NO_SIMULATOR)?;
         let model = WorldModel::of(settings.league, &settings.world.of_match(seed));
-        let mut world = World::of_model(settings.league, &model.ok_or_else(no_simulator)?, seed);
+        let mut world = World::of_model(settings.league, &model.ok_or(NO_SIMULATOR)?, seed);
         line_up(&mut world, &settings, seed);
         Ok(Self {
             scales: Scales {
@@ -92,11 +91,11 @@ impl State {
 
     /// Whether a state that was read can be played: its world is whole and has the robots of its settings.
     pub fn is_consistent(&self) -> bool {
-        let present = |side| {
-            let mut ids = RobotId::all().take(self.settings.count(side));
-            ids.all(|id| self.world.robot(Who { colour: side, id }).is_some())
-        };
-        self.world.is_consistent() && present(Colour::Blue) && present(Colour::Yellow)
+        self.world.is_consistent()
+            && Colour::ALL.into_iter().all(|colour| {
+                let mut ids = RobotId::all().take(self.settings.count(colour));
+                ids.all(|id| self.world.robot(Who { colour, id }).is_some())
+            })
     }
 
     /// Gives the caller's orders and the script's.
@@ -235,8 +234,7 @@ impl State {
             return None;
         }
         let (ball, ends) = (self.world.ball.position, &spec.ends);
-        let outside = |[x, y]: [f32; 2]| ball.x().abs() > x || ball.y().abs() > y;
-        if ends.region.is_some_and(outside) {
+        if ends.region.is_some_and(|[x, y]| ball.x().abs() > x || ball.y().abs() > y) {
             return Some(End::Out);
         }
         let touch = self.world.last_touch().filter(|(_, step)| *step > self.started);
@@ -249,13 +247,11 @@ impl State {
     /// Whether robot 1 has a ball that came that far from robot 0.
     fn received(&mut self, distance: f32) -> Option<End> {
         let ball = self.world.ball.position;
-        let own = |n| RobotId::new(n).and_then(|id| self.world.robot(Who::blue(id)));
-        let (passer, receiver) = (own(0)?, own(1)?);
         if distance == 0.0 {
             return None;
         }
-        // The break-beam sensor may see the ball before the hull touches it.
-        let has_ball = |robot: &Robot| robot.touching || robot.ball_contact;
+        let mut own = RobotId::all().filter_map(|id| self.world.robot(Who::blue(id)));
+        let (passer, receiver) = (own.next()?, own.next()?);
         if has_ball(passer) {
             self.passed_from = Some(ball);
         } else if has_ball(receiver) {
@@ -270,20 +266,17 @@ impl State {
 
     /// Whether a side alone has held the ball that long, s.
     fn held(&mut self, seconds: f32) -> Option<End> {
+        if seconds == 0.0 {
+            return None;
+        }
         let now = self.world.now();
-        let holds = |side| {
-            let robots = self.world.robots().iter();
-            let mut robots =
-                robots.filter(|robot| robot.who.colour == side && robot.present && !robot.bystander);
-            robots.any(|robot| robot.ball_contact)
-        };
-        let side = match (seconds > 0.0, holds(Colour::Blue), holds(Colour::Yellow)) {
-            (true, true, false) => Colour::Blue,
-            (true, false, true) => Colour::Yellow,
-            _ => {
-                self.holder = None;
-                return None;
-            }
+        let robots = self.world.robots().iter().filter(|robot| robot.present && !robot.bystander);
+        let mut holders = Colour::ALL
+            .into_iter()
+            .filter(|side| robots.clone().any(|robot| robot.who.colour == *side && robot.ball_contact));
+        let (Some(side), None) = (holders.next(), holders.next()) else {
+            self.holder = None;
+            return None;
         };
         let since = self.holder.filter(|(holder, _)| *holder == side).map_or(now, |(_, since)| since);
         self.holder = Some((side, since));
@@ -302,6 +295,12 @@ impl State {
     }
 }
 
+/// Whether a robot touches the ball; its break-beam sensor may detect it before the hull does.
+fn has_ball(robot: &Robot) -> bool {
+    robot.touching || robot.ball_contact
+}
+
+const NO_SIMULATOR: &str = "that league has no simulator of wheeled robots";
 /// Goals ahead that are observed as 1: more is rare in a match.
 const SCORE_SCALE: f32 = 10.0;
 /// Height of the ball that is observed as 1, m: chips rise higher for moments only.

@@ -64,13 +64,16 @@ impl VectorSimulator {
             return Err(refused(format!("count {count}: take 1 to {COUNT_MAX} episodes")));
         }
         let settings = simulator.borrow().settings().clone();
-        let start = |seed| Episode::start(settings.clone(), seed);
-        let episodes = py.detach(|| (0..count as u64).map(start).collect::<Result<Vec<_>, _>>());
+        let episodes = py.detach(|| {
+            (0..count as u64)
+                .map(|seed| Episode::start(settings.clone(), seed))
+                .collect::<Result<Vec<_>, _>>()
+        });
         Self::of(episodes.map_err(failed)?, settings.clone(), threads)
     }
 
-    /// Starts the listed episodes again, each from its seed, and steps all others. Writes the observation, the
-    /// reward and the number of the end of each episode; 0 while it goes on.
+    /// Starts the listed episodes again, each from its seed, and steps all others. Writes observation,
+    /// reward and number of the end of each episode; 0 while it goes on.
     fn step(
         &mut self,
         py: Python<'_>,
@@ -215,16 +218,15 @@ impl Worker {
     fn start() -> Result<Self, String> {
         let (to, inbox) = channel::<Share>();
         let (outbox, back) = channel();
-        let body = move || {
+        let thread = std::thread::Builder::new().name("onetwo vector".to_owned()).spawn(move || {
             for mut share in inbox {
                 share.step();
                 if outbox.send(share).is_err() {
                     break;
                 }
             }
-        };
-        let thread = std::thread::Builder::new().name("onetwo vector".to_owned());
-        thread.spawn(body).map_err(|error| format!("no thread for episodes: {error}"))?;
+        });
+        thread.map_err(|error| format!("no thread for episodes: {error}"))?;
         Ok(Self { to, back: Mutex::new(back) })
     }
 }
