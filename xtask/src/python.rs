@@ -12,8 +12,7 @@ use std::{env, fs};
 use crate::context::{Context, Failure, output_of, run};
 
 /// The property checked by the step.
-pub(crate) const WHAT: &str =
-    "the Python package installs, answers as the program does and passes Gymnasium's and PettingZoo's checkers";
+pub(crate) const WHAT: &str = "the Python package installs, answers as the program does and passes Gymnasium's and PettingZoo's checkers";
 
 /// Runs it.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {

@@ -75,7 +75,7 @@ mod tests {
             |world: &mut World| world.near_ball.push(12),
             |world: &mut World| world.pairs.push((0, 12)),
             |world: &mut World| world.places[yellow(0).slot()] = None,
-            |world: &mut World| drop(world.senses.pop()),
+            |world: &mut World| world.senses.truncate(3),
             |world: &mut World| world.crashes.truncate(7),
         ] {
             let mut damaged = world.clone();
