@@ -7,11 +7,12 @@
 use geometry::math;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
+use serde::{Deserialize, Serialize};
 
 use crate::hash::Fnv;
 
 /// The random stream of one subsystem.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Stream(Xoshiro128PlusPlus);
 
 impl Stream {

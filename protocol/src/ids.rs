@@ -80,7 +80,7 @@ impl TeamId {
 }
 
 /// Identity of a robot: team colour and number; yellow sorts first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Who {
     /// Colour of its team.
     pub colour: Colour,

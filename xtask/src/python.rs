@@ -12,8 +12,7 @@ use std::{env, fs};
 use crate::context::{Context, Failure, output_of, run};
 
 /// The property checked by the step.
-pub(crate) const WHAT: &str =
-    "the Python package installs, answers as the program does and passes Gymnasium's own checker";
+pub(crate) const WHAT: &str = "the Python package installs, answers as the program does and passes Gymnasium's and PettingZoo's checkers";
 
 /// Runs it.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
@@ -143,9 +142,9 @@ const PACKAGE: &str = "./host/python";
 const MANIFEST: &str = "--manifest-path host/python/Cargo.toml";
 /// Names of Python on various systems.
 const NAMES: [&str; 2] = ["python3", "python"];
-/// What builds and tests the package: the build tool and the checker by version, so that a run can be
+/// What builds and tests the package: the build tool and the checkers by version, so that a run can be
 /// repeated.
-const NEEDED: [&str; 3] = ["maturin==1.16.0", "gymnasium==1.4.0", "numpy>=1.26"];
+const NEEDED: [&str; 4] = ["maturin==1.16.0", "gymnasium==1.4.0", "pettingzoo==1.27.0", "numpy>=1.26"];
 
 #[cfg(test)]
 mod tests {

@@ -8,12 +8,13 @@
 
 use protocol::RobotId;
 use protocol::robot_io::ActuatorFrame;
+use serde::{Deserialize, Serialize};
 
 use crate::four_legged::world::{LeggedBall, LeggedWorld, Walker};
 use crate::hash::Fnv;
 
 /// A running hash of a trial.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TraceHash(pub(crate) Fnv);
 
 impl TraceHash {

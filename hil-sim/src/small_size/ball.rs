@@ -7,11 +7,12 @@
 //! purpose: an error of that model must become visible as a missed pass.
 
 use geometry::{Field, Point, Vector, math};
+use serde::{Deserialize, Serialize};
 
 use super::parameters::BallParameters;
 
 /// The ball's true state.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ball {
     /// Position of its centre on the ground, m.
     pub position: Point<Field>,

@@ -3,9 +3,10 @@
 use geometry::{Field, Point, Vector};
 
 use protocol::Who;
+use serde::{Deserialize, Serialize};
 
 /// Events of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PhysicsEvent {
     /// Contact of ball and robot, after at least [`super::TOUCH_GAP_STEPS`] apart.
     Touched {

@@ -23,6 +23,7 @@ mod parameters;
 mod pitch;
 pub mod referee;
 mod robot;
+mod saved;
 mod senses;
 pub mod server;
 mod surface;
@@ -44,6 +45,7 @@ use geometry::{Angle, Field, Point, Pose, Vector};
 use protocol::robot_io::ActuatorFrame;
 use protocol::{RobotId, Who};
 use rules::League;
+use serde::{Deserialize, Serialize};
 
 use crate::rng::Stream;
 use senses::Senses;
@@ -51,7 +53,7 @@ use surface::Slab;
 use worlds::{Latency, LinkModel, RobotSpread, WorldModel};
 
 /// The true state of ball and robots.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct World {
     /// True state of the ball.
     pub ball: Ball,
@@ -86,7 +88,7 @@ pub struct World {
     highest_robot: f32,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct BallDrag {
     to: Point<Field>,
     /// The step in which it ends; `None`: it lasts until it is released.
@@ -263,7 +265,11 @@ impl World {
 
     /// Gives a robot's body its brain's order, after the world's latency; false where there is no such robot.
     pub fn command(&mut self, who: Who, frame: &ActuatorFrame) -> bool {
-        let order = Order::from_actuators(frame, &self.parameters);
+        self.send_order(who, Order::from_actuators(frame, &self.parameters))
+    }
+
+    /// Gives a robot an order after the world's latency; false where there is no such robot.
+    pub fn send_order(&mut self, who: Who, order: Order) -> bool {
         if self.latency.is_none() {
             return self.order(who, order);
         }

@@ -2,11 +2,12 @@
 
 use geometry::{Body, Field, Twist, math};
 use protocol::robot_io::{ActuatorFrame, OmniKick};
+use serde::{Deserialize, Serialize};
 
 use super::parameters::Parameters;
 
 /// Order to a robot's wheels.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub enum Drive {
     /// Brake all wheels and stand.
     #[default]
@@ -21,7 +22,7 @@ pub enum Drive {
 }
 
 /// A kick that fires as soon as the ball lies in the dribbler opening and the kicker is charged.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KickCommand {
     /// Speed of the ball in 3-D, m/s.
     pub speed: f32,
@@ -30,7 +31,7 @@ pub struct KickCommand {
 }
 
 /// The last order to a robot.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Order {
     /// Order to the wheels.
     pub drive: Drive,

@@ -1,12 +1,13 @@
 //! `pitch`: goals and boards. Goals with posts, bars and nets, boards at the margin; m, field frame.
 
 use rules::FieldSpec;
+use serde::{Deserialize, Serialize};
 
 use super::parameters::FieldParameters;
 use super::surface::Slab;
 
 /// The field with the obstacles on it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pitch {
     /// Lines, goals and margins.
     pub field: FieldSpec,

@@ -6,6 +6,7 @@
 
 use geometry::{Field, Point, Pose, Twist, Vector, math};
 use protocol::Who;
+use serde::{Deserialize, Serialize};
 
 use super::STEP;
 use super::order::{Drive, Order};
@@ -14,7 +15,7 @@ use super::wheels::Wheels;
 use super::worlds::Traits;
 
 /// The true state of a robot.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Robot {
     /// Team and number.
     pub who: Who,
@@ -70,7 +71,7 @@ pub struct Robot {
 }
 
 /// The robot is pulled, pushing movable bodies aside.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Drag {
     pub to: Point<Field>,
     pub heading: Option<geometry::Angle>,
@@ -79,14 +80,14 @@ pub(super) struct Drag {
 }
 
 /// Ordered rim speeds, and the motion of the body that they give.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Wanted {
     rims: [f32; 4],
     motion: [f32; 3],
 }
 
 /// Measurements of wheels and gyroscope since the last sensor frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Odometer {
     pub along: [f32; 2],
     pub turned: f32,

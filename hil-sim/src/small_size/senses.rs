@@ -5,6 +5,7 @@
 
 use geometry::{Twist, Vector};
 use protocol::robot_io::{Health, SensorFrame};
+use serde::{Deserialize, Serialize};
 
 use super::STEP;
 use super::parameters::{BatteryParameters, NoiseParameters};
@@ -13,7 +14,7 @@ use crate::rng::Stream;
 use protocol::Who;
 
 /// The sensors of one robot.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Senses {
     noise: NoiseParameters,
     chance: Stream,

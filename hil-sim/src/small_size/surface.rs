@@ -3,6 +3,8 @@
 //! The hull is a disc with a flat front: the part beyond the chord at `front` is cut off. Distances are exact
 //! outside (so that steps as long as the distance never jump into a body) and, inside, to the nearest side.
 
+use serde::{Deserialize, Serialize};
+
 use super::parameters::BodyParameters;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +42,7 @@ pub(super) fn hull(body: &BodyParameters, half_front: f32, [x, y]: [f32; 2]) -> 
 }
 
 /// A box with sides along the axes: from and to along x and y.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Slab {
     pub x: [f32; 2],
     pub y: [f32; 2],

@@ -5,8 +5,9 @@
 //! kinematics, which robots use.
 
 use geometry::Angle;
+use serde::{Deserialize, Serialize};
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Wheels {
     /// For v_x, v_y, ω of 1 each: the rim speeds of the four wheels.
     rims: [[f32; 4]; 3],

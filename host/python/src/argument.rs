@@ -18,12 +18,15 @@ macro_rules! arguments {
 }
 
 arguments! {
-    own: whole -> usize;
+    own: optional_whole -> Option<usize>;
+    agents: optional_whole -> Option<usize>;
+    count: whole -> usize;
+    threads: whole -> usize;
     index: whole -> usize;
     robots: whole -> usize;
-    period_ms: whole -> u32;
+    period_ms: optional_whole -> Option<u32>;
     seed: whole -> u64;
-    time_limit_s: real -> f64;
+    time_limit_s: optional_real -> Option<f64>;
     loss: share -> f32;
     x: short_real -> f32;
     y: short_real -> f32;
@@ -34,6 +37,10 @@ arguments! {
     symmetry: flag -> bool;
     case_opponents: flag -> bool;
     opponents_play_on: flag -> bool;
+    task: text -> Text;
+    teammates_by: text -> Text;
+    opponents_by: optional_text -> Option<Text>;
+    world: text -> Text;
     league: text -> Text;
     scenario: text -> Text;
     opponents: text -> Text;
@@ -66,14 +73,14 @@ impl std::ops::Deref for Text {
     }
 }
 
-/// A number of opponents.
-pub fn opponents_count(value: &Bound<'_, PyAny>) -> PyResult<usize> {
-    whole("opponents", value)
+/// A number of opponents, or `None`.
+pub fn opponents_count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    optional_whole("opponents", value)
 }
 
 /// A number of robots, or `None`.
 pub fn retrievers(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
-    if value.is_none() { Ok(None) } else { whole("retrievers", value).map(Some) }
+    optional_whole("retrievers", value)
 }
 
 /// A whole number of that type.
@@ -86,6 +93,18 @@ fn whole<T: TryFrom<i128>>(name: &str, value: &Bound<'_, PyAny>) -> PyResult<T> 
             8 * size_of::<T>()
         ))
     })
+}
+
+fn optional_whole<T: TryFrom<i128>>(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<T>> {
+    if value.is_none() { Ok(None) } else { whole(name, value).map(Some) }
+}
+
+fn optional_real(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
+    if value.is_none() { Ok(None) } else { real(name, value).map(Some) }
+}
+
+fn optional_text(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Text>> {
+    if value.is_none() { Ok(None) } else { text(name, value).map(Some) }
 }
 
 fn real(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {

@@ -6,10 +6,18 @@
 #![forbid(unsafe_code)]
 
 mod argument;
+mod computers;
+mod driver;
 mod episode;
 mod library;
+mod saved;
+mod settings;
 mod simulator;
+mod start;
+mod state;
+mod task;
 mod trial;
+mod vector;
 
 use pyo3::prelude::*;
 
@@ -23,6 +31,8 @@ mod onetwo_native {
     use super::simulator::{_simulator, Simulator};
     #[pymodule_export]
     use super::trial::trial;
+    #[pymodule_export]
+    use super::vector::{_vector, VectorSimulator};
 
     /// The package's version.
     #[pymodule_export]

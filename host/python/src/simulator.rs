@@ -4,25 +4,24 @@
 use geometry::{Angle, Point, Pose, Vector};
 use hil_sim::small_size::Ball;
 use protocol::{RobotId, Who};
-use pyo3::buffer::PyBuffer;
+use pyo3::buffer::{Element, PyBuffer};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use rules::{Colour, League};
 
 use crate::argument::{self, Text};
-use crate::episode::{ACTION_LEN, Episode, Settings, observation_len};
+use crate::driver::Driver;
+use crate::episode::Episode;
 use crate::refused;
+use crate::saved::{restored, saved};
+use crate::settings::{ACTION_LEN, End, Settings, View};
+use crate::task::Task;
 
 /// Episodes of the Small Size simulator.
-#[derive(Clone)]
 #[pyclass(module = "onetwo")]
 pub struct Simulator {
-    settings: Settings,
     episode: Episode,
-    /// Seed of the episode, and what has happened in it since: they are what a pickle holds.
-    seed: u64,
-    events: Vec<Event>,
     own: Vec<f32>,
     opponents: Vec<f32>,
     observation: Vec<f32>,
@@ -30,50 +29,50 @@ pub struct Simulator {
 
 #[pymethods]
 impl Simulator {
-    /// A simulator, with its first episode begun from `seed`.
+    /// A simulator, with its first episode started from `seed`.
     #[new]
-    #[pyo3(signature = (own = 1, opponents = 0, *, league = Text::of("division-b"), period_ms = 25, time_limit_s = 30.0, seed = 0))]
+    #[pyo3(signature = (own = None, opponents = None, *, task = Text::of("score"), agents = None,
+        teammates_by = Text::of("none"), opponents_by = None, world = Text::of("nominal"),
+        league = Text::of("division-b"), period_ms = None, time_limit_s = None, seed = 0))]
     fn new(
-        #[pyo3(from_py_with = argument::own)] own: usize,
-        #[pyo3(from_py_with = argument::opponents_count)] opponents: usize,
+        py: Python<'_>,
+        #[pyo3(from_py_with = argument::own)] own: Option<usize>,
+        #[pyo3(from_py_with = argument::opponents_count)] opponents: Option<usize>,
+        #[pyo3(from_py_with = argument::task)] task: Text,
+        #[pyo3(from_py_with = argument::agents)] agents: Option<usize>,
+        #[pyo3(from_py_with = argument::teammates_by)] teammates_by: Text,
+        #[pyo3(from_py_with = argument::opponents_by)] opponents_by: Option<Text>,
+        #[pyo3(from_py_with = argument::world)] world: Text,
         #[pyo3(from_py_with = argument::league)] league: Text,
-        #[pyo3(from_py_with = argument::period_ms)] period_ms: u32,
-        #[pyo3(from_py_with = argument::time_limit_s)] time_limit_s: f64,
+        #[pyo3(from_py_with = argument::period_ms)] period_ms: Option<u32>,
+        #[pyo3(from_py_with = argument::time_limit_s)] time_limit_s: Option<f64>,
         #[pyo3(from_py_with = argument::seed)] seed: u64,
     ) -> PyResult<Self> {
-        let found = LEAGUES.into_iter().find(|known| known.name() == &*league);
-        let league = found.ok_or_else(|| {
-            refused(format!("league {:?}: take {}", &*league, LEAGUES.map(League::name).join(" or ")))
-        })?;
-        if !(1..=ROBOTS_MAX).contains(&own) || opponents > ROBOTS_MAX {
-            return Err(refused(format!(
-                "own {own}, opponents {opponents}: take 1 to {ROBOTS_MAX} own robots and at most {ROBOTS_MAX} opponents"
-            )));
-        }
-        if !(1..=PERIOD_MAX_MS).contains(&period_ms) {
-            return Err(refused(format!("period_ms {period_ms}: take 1 to {PERIOD_MAX_MS} ms")));
-        }
-        if time_limit_s.is_nan() || time_limit_s <= 0.0 {
-            return Err(refused(format!("time_limit_s {time_limit_s}: take more than 0 s")));
-        }
-        let settings = Settings { league, own, opponents, period_ms, time_limit_s };
-        let episode = start(&settings, seed)?;
-        Ok(Self {
-            own: vec![0.0; ACTION_LEN * own],
-            opponents: vec![0.0; ACTION_LEN * opponents],
-            observation: vec![0.0; observation_len(&settings)],
-            settings,
-            episode,
-            seed,
-            events: Vec::new(),
-        })
+        let task = known("task", &task, Task::from_label, &Task::ALL.map(Task::label))?;
+        let driver =
+            |name: &str, label: &str| known(name, label, Driver::from_label, &Driver::ALL.map(Driver::label));
+        let spec = task.spec();
+        let own = own.unwrap_or(spec.own);
+        let opponents_by = opponents_by.map_or(Ok(spec.opponents_by), |label| driver("opponents_by", &label));
+        let mut settings = Settings {
+            task,
+            league: known("league", &league, league_of, &Settings::LEAGUES.map(League::name))?,
+            own,
+            opponents: opponents.unwrap_or(spec.opponents),
+            agents: agents.unwrap_or(own),
+            teammates_by: driver("teammates_by", &teammates_by)?,
+            opponents_by: opponents_by?,
+            world: world.parse().map_err(|error| refused(format!("world: {error}")))?,
+            period_ms: 0,
+            time_limit_s: time_limit_s.unwrap_or(spec.time_limit_s),
+        };
+        settings.period_ms = period_ms.unwrap_or_else(|| settings.default_period_ms());
+        Ok(Self::of(start(py, &settings, seed)?))
     }
 
-    /// Begins another episode, from the start positions of that seed.
-    fn reset(&mut self, #[pyo3(from_py_with = argument::seed)] seed: u64) -> PyResult<()> {
-        self.episode = start(&self.settings, seed)?;
-        self.seed = seed;
-        self.events.clear();
+    /// Starts another episode, from the start positions of that seed.
+    fn reset(&mut self, py: Python<'_>, #[pyo3(from_py_with = argument::seed)] seed: u64) -> PyResult<()> {
+        self.episode = start(py, &self.episode.state.settings, seed)?;
         Ok(())
     }
 
@@ -86,51 +85,59 @@ impl Simulator {
         opponent_actions: Option<&Bound<'_, PyAny>>,
         into: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<(f32, Option<&'static str>)> {
-        read("actions", actions, &mut self.own)?;
+        read_actions("actions", actions, &mut self.own)?;
+        let mut against = &[][..];
         if let Some(actions) = opponent_actions {
-            read("opponent_actions", actions, &mut self.opponents)?;
+            let driver = self.episode.state.settings.opponents_by;
+            if driver != Driver::None {
+                let label = driver.label();
+                return Err(refused(format!(
+                    "opponent_actions: {label:?} moves the opponents; take opponents_by=\"none\" to order them"
+                )));
+            }
+            read_actions("opponent_actions", actions, &mut self.opponents)?;
+            against = &self.opponents[..];
         }
-        let against = opponent_actions.map_or_else(Vec::new, |_| self.opponents.clone());
-        let event = Event::Step { own: self.own.clone(), opponents: against };
-        py.detach(|| self.play(event));
+        py.detach(|| self.episode.step(&self.own, against)).map_err(failed)?;
         if let Some(into) = into {
-            self.observe(into)?;
+            self.observe(into, 0, false)?;
         }
-        Ok((self.episode.reward, self.episode.end.map(crate::episode::End::label)))
+        Ok((self.episode.state.reward, self.episode.state.end.map(End::label)))
     }
 
     /// Writes the observation into a writable buffer of `observation_size` float32.
-    fn observe(&mut self, into: &Bound<'_, PyAny>) -> PyResult<()> {
-        let size = observation_len(&self.settings);
-        let wrong = || refused(format!("into: expected a writable, contiguous buffer of {size} float32"));
-        let buffer = PyBuffer::<f32>::get(into).map_err(|_| wrong())?;
-        if !has_native_byte_order(&buffer)
-            || buffer.readonly()
-            || !buffer.is_c_contiguous()
-            || buffer.item_count() != size
-        {
-            return Err(wrong());
+    #[pyo3(signature = (into, index = 0, opponent = false))]
+    fn observe(
+        &mut self,
+        into: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = argument::index)] index: usize,
+        #[pyo3(from_py_with = argument::opponent)] opponent: bool,
+    ) -> PyResult<()> {
+        let side = side_of(opponent);
+        // An empty side may still be looked at, as its first robot would.
+        if index > 0 {
+            self.robot(index, opponent)?;
         }
-        let values = &mut self.observation[..];
-        self.episode.observe(|at, value| values[at] = value);
-        buffer.copy_from_slice(into.py(), values)
+        let state = &self.episode.state;
+        state.observe(View { side, first: index }, &mut self.observation);
+        write("into", into, &self.observation)
     }
 
     /// The true state as a dict: SI units, field frame, own robots attack +x.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let world = &self.episode.world;
+        let of = &self.episode.state;
+        let world = &of.world;
         let ball = PyDict::new(py);
         let (at, velocity) = (world.ball.position, world.ball.velocity);
         ball.set_item("position", (at.x(), at.y(), world.ball.height))?;
         ball.set_item("velocity", (velocity.x(), velocity.y(), world.ball.climb))?;
         let state = PyDict::new(py);
-        state.set_item("time_s", world.time())?;
+        state.set_item("time_s", of.time_s())?;
         state.set_item("ball", ball)?;
-        for (name, colour, count) in
-            [("own", Colour::Blue, self.settings.own), ("opponents", Colour::Yellow, self.settings.opponents)]
-        {
+        for (name, colour) in [("own", Colour::Blue), ("opponents", Colour::Yellow)] {
             let mut robots = Vec::new();
-            for robot in RobotId::all().take(count).filter_map(|id| world.robot(Who { colour, id })) {
+            let ids = RobotId::all().take(of.settings.count(colour));
+            for robot in ids.filter_map(|id| world.robot(Who { colour, id })) {
                 let one = PyDict::new(py);
                 one.set_item("position", (robot.pose.position.x(), robot.pose.position.y()))?;
                 one.set_item("heading", robot.pose.heading.radians())?;
@@ -141,6 +148,8 @@ impl Simulator {
             }
             state.set_item(name, robots)?;
         }
+        state.set_item("score", (of.score[0], of.score[1]))?;
+        state.set_item("in_play", of.in_play)?;
         Ok(state)
     }
 
@@ -153,7 +162,7 @@ impl Simulator {
         #[pyo3(from_py_with = argument::vx)] vx: f32,
         #[pyo3(from_py_with = argument::vy)] vy: f32,
     ) {
-        self.play(Event::Ball([x, y, vx, vy]));
+        self.episode.put_ball(Ball::rolling(Point::new(x, y), Vector::new(vx, vy)));
     }
 
     /// Places a robot, resting: an own one by its index, or an opponent.
@@ -166,35 +175,45 @@ impl Simulator {
         #[pyo3(from_py_with = argument::heading)] heading: f32,
         #[pyo3(from_py_with = argument::opponent)] opponent: bool,
     ) -> PyResult<()> {
-        let count = if opponent { self.settings.opponents } else { self.settings.own };
-        if index >= count {
-            return Err(refused(format!("index {index}: that team has {count} robots")));
-        }
-        self.play(Event::Robot { opponent, index: index as u8, pose: [x, y, heading] });
+        let who = self.robot(index, opponent)?;
+        self.episode.put_robot(who, Pose { position: Point::new(x, y), heading: Angle::new(heading) });
         Ok(())
     }
 
-    fn __copy__(&self) -> Self {
-        self.clone()
+    fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
+        Ok(Self::of(py.detach(|| self.episode.copy()).map_err(failed)?))
     }
 
     /// The episode goes on in the copy as it would here, bit for bit.
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
-        self.clone()
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.__copy__(py)
     }
 
-    /// A pickle holds the seed and all that happened since; it is played again.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Pickled)> {
-        let function = py.import("onetwo._native")?.getattr("_simulator")?;
-        let Settings { league, own, opponents, period_ms, time_limit_s } = self.settings;
-        let events = self.events.iter().map(Event::numbers).collect();
-        Ok((function, (own, opponents, league.name().to_owned(), period_ms, time_limit_s, self.seed, events)))
+    /// A pickle holds the saved state.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        Ok((py.import("onetwo._native")?.getattr("_simulator")?, (self.save(py)?,)))
+    }
+
+    /// The whole state of the episode as bytes.
+    fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &saved(&self.episode.saved())?))
+    }
+
+    /// Goes on from a saved state of a simulator with the same settings.
+    fn restore(&mut self, py: Python<'_>, state: &Bound<'_, PyAny>) -> PyResult<()> {
+        let episode = episode_of(py, bytes_of(state)?)?;
+        let (theirs, ours) = (&episode.state.settings, &self.episode.state.settings);
+        if theirs != ours {
+            return Err(refused(format!("state: of a simulator with {theirs:?}; this one has {ours:?}")));
+        }
+        self.episode = episode;
+        Ok(())
     }
 
     /// Simulated time since the episode's start, s.
     #[getter]
     fn time_s(&self) -> f64 {
-        self.episode.world.time()
+        self.episode.state.time_s()
     }
 
     /// Number of values in `actions`.
@@ -206,113 +225,144 @@ impl Simulator {
     /// Number of values in an observation.
     #[getter]
     fn observation_size(&self) -> usize {
-        observation_len(&self.settings)
+        self.observation.len()
+    }
+
+    /// How the episode ended, or None while it goes on.
+    #[getter]
+    fn end(&self) -> Option<&'static str> {
+        self.episode.state.end.map(End::label)
+    }
+
+    /// Goals of the own team and of the opponents under the referee.
+    #[getter]
+    fn score(&self) -> (u32, u32) {
+        self.episode.state.score.into()
+    }
+
+    /// Numbers of robots: own, those of them that the caller moves, opponents.
+    #[getter]
+    fn robots(&self) -> (usize, usize, usize) {
+        let Settings { own, agents, opponents, .. } = self.episode.state.settings;
+        (own, agents, opponents)
+    }
+
+    /// Name of the task.
+    #[getter]
+    fn task(&self) -> &'static str {
+        self.episode.state.settings.task.label()
+    }
+
+    /// Who moves the opponents.
+    #[getter]
+    fn opponents_by(&self) -> &'static str {
+        self.episode.state.settings.opponents_by.label()
+    }
+
+    /// Control period, ms.
+    #[getter]
+    fn period_ms(&self) -> u32 {
+        self.episode.state.settings.period_ms
     }
 
     /// Hash of every step's state so far: equal for equal episodes.
     #[getter]
     fn trace_hash(&self) -> String {
-        self.episode.trace_hash()
-    }
-}
-
-/// Arguments of [`_simulator`].
-type Pickled = (usize, usize, String, u32, f64, u64, Vec<Vec<f32>>);
-
-/// What was done to an episode.
-#[derive(Clone)]
-enum Event {
-    /// A control period with these orders.
-    Step { own: Vec<f32>, opponents: Vec<f32> },
-    /// The ball was placed: place and velocity.
-    Ball([f32; 4]),
-    /// A robot was placed: place and heading.
-    Robot { opponent: bool, index: u8, pose: [f32; 3] },
-}
-
-impl Event {
-    /// As numbers: the kind, then what it has.
-    fn numbers(&self) -> Vec<f32> {
-        match self {
-            Self::Step { own, opponents } => [&[0.0], &own[..], opponents].concat(),
-            Self::Ball(ball) => [&[1.0], &ball[..]].concat(),
-            Self::Robot { opponent, index, pose } => {
-                [&[2.0, f32::from(u8::from(*opponent)), f32::from(*index)], &pose[..]].concat()
-            }
-        }
-    }
-
-    /// An event of its numbers, in an episode with that many numbers of own orders.
-    fn of(numbers: &[f32], own_len: usize) -> Option<Self> {
-        match numbers.split_first()? {
-            (0.0, orders) => {
-                let (own, opponents) = orders.split_at_checked(own_len)?;
-                Some(Self::Step { own: own.to_vec(), opponents: opponents.to_vec() })
-            }
-            (1.0, ball) => Some(Self::Ball(ball.try_into().ok()?)),
-            (2.0, [opponent, index, pose @ ..]) => {
-                let pose = pose.try_into().ok()?;
-                Some(Self::Robot { opponent: *opponent != 0.0, index: *index as u8, pose })
-            }
-            _ => None,
-        }
+        self.episode.state.trace.digits()
     }
 }
 
 impl Simulator {
-    /// Does something to the episode, and keeps it for a pickle.
-    fn play(&mut self, event: Event) {
-        let world = &mut self.episode.world;
-        match &event {
-            Event::Step { own, opponents } => self.episode.step(own, opponents),
-            Event::Ball([x, y, vx, vy]) => {
-                world.put_ball(Ball::rolling(Point::new(*x, *y), Vector::new(*vx, *vy)));
-            }
-            Event::Robot { opponent, index, pose: [x, y, heading] } => {
-                let colour = if *opponent { Colour::Yellow } else { Colour::Blue };
-                let pose = Pose { position: Point::new(*x, *y), heading: Angle::new(*heading) };
-                if let Some(id) = RobotId::new(*index) {
-                    world.put(Who { colour, id }, pose);
-                }
-            }
+    /// Around an episode.
+    fn of(episode: Episode) -> Self {
+        let settings = &episode.state.settings;
+        Self {
+            own: vec![0.0; settings.action_len(Colour::Blue)],
+            opponents: vec![0.0; settings.action_len(Colour::Yellow)],
+            observation: vec![0.0; settings.observation_len()],
+            episode,
         }
-        self.events.push(event);
+    }
+
+    /// Settings of its episodes.
+    pub fn settings(&self) -> &Settings {
+        &self.episode.state.settings
+    }
+
+    fn robot(&self, index: usize, opponent: bool) -> PyResult<Who> {
+        let colour = side_of(opponent);
+        let count = self.settings().count(colour);
+        let id = RobotId::new(index.min(usize::from(u8::MAX)) as u8).filter(|_| index < count);
+        let id = id.ok_or_else(|| refused(format!("index {index}: that team has {count} robots")))?;
+        Ok(Who { colour, id })
     }
 }
 
 /// A simulator read from its pickle.
 #[pyfunction]
-pub fn _simulator(
-    own: usize,
-    opponents: usize,
-    league: &str,
-    period_ms: u32,
-    time_limit_s: f64,
-    seed: u64,
-    events: Vec<Vec<f32>>,
-) -> PyResult<Simulator> {
-    let league = Text::from(league.to_owned());
-    let mut simulator = Simulator::new(own, opponents, league, period_ms, time_limit_s, seed)?;
-    for numbers in events {
-        let event = Event::of(&numbers, ACTION_LEN * own);
-        simulator.play(event.ok_or_else(|| refused("a pickle of another version of onetwo"))?);
-    }
-    Ok(simulator)
+pub fn _simulator(py: Python<'_>, state: &[u8]) -> PyResult<Simulator> {
+    Ok(Simulator::of(episode_of(py, state)?))
 }
 
-fn start(settings: &Settings, seed: u64) -> PyResult<Episode> {
-    Episode::start(settings.clone(), seed)
-        .ok_or_else(|| PyRuntimeError::new_err("that league has no simulator of wheeled robots"))
+/// The episode of a saved state.
+fn episode_of(py: Python<'_>, state: &[u8]) -> PyResult<Episode> {
+    let saved = restored(state)?;
+    py.detach(|| Episode::restored(saved)).map_err(|error| refused(format!("state: {error}")))
+}
+
+/// The bytes of an argument `state`.
+pub fn bytes_of<'a>(state: &'a Bound<'_, PyAny>) -> PyResult<&'a [u8]> {
+    let bytes = state.cast::<PyBytes>().map_err(|_| refused("state: take the bytes that save() returned"))?;
+    Ok(bytes.as_bytes())
+}
+
+fn start(py: Python<'_>, settings: &Settings, seed: u64) -> PyResult<Episode> {
+    settings.check().map_err(refused)?;
+    py.detach(|| Episode::start(settings.clone(), seed)).map_err(failed)
+}
+
+/// An error of the simulator itself.
+pub fn failed(error: String) -> PyErr {
+    PyRuntimeError::new_err(error)
+}
+
+fn side_of(opponent: bool) -> Colour {
+    if opponent { Colour::Yellow } else { Colour::Blue }
+}
+
+fn league_of(name: &str) -> Option<League> {
+    Settings::LEAGUES.into_iter().find(|known| known.name() == name)
+}
+
+/// The value of that label, or an error with the known ones.
+fn known<T>(name: &str, label: &str, find: fn(&str) -> Option<T>, labels: &[&str]) -> PyResult<T> {
+    find(label).ok_or_else(|| refused(format!("{name} {label:?}: take {}", labels.join(" or "))))
 }
 
 /// Whether a buffer's numbers are in this machine's byte order: `PyBuffer` takes both orders.
-fn has_native_byte_order(buffer: &PyBuffer<f32>) -> bool {
+fn has_native_byte_order<T: Element>(buffer: &PyBuffer<T>) -> bool {
     let foreign: &[u8] = if cfg!(target_endian = "little") { b">!" } else { b"<" };
     !buffer.format().to_bytes().first().is_some_and(|order| foreign.contains(order))
 }
 
-/// Reads numbers from a buffer of float32, or from a sequence of numbers.
-fn read(name: &str, from: &Bound<'_, PyAny>, into: &mut [f32]) -> PyResult<()> {
+/// Writes numbers into a writable buffer of their type and number.
+pub fn write<T: Element>(name: &str, into: &Bound<'_, PyAny>, values: &[T]) -> PyResult<()> {
+    let kind = std::any::type_name::<T>().replace('f', "float").replace('u', "uint");
+    let size = values.len();
+    let wrong = || refused(format!("{name}: expected a writable, contiguous buffer of {size} {kind}"));
+    let buffer = PyBuffer::<T>::get(into).map_err(|_| wrong())?;
+    if !has_native_byte_order(&buffer)
+        || buffer.readonly()
+        || !buffer.is_c_contiguous()
+        || buffer.item_count() != size
+    {
+        return Err(wrong());
+    }
+    buffer.copy_from_slice(into.py(), values)
+}
+
+/// Reads orders from a buffer of float32, or from a sequence of numbers.
+pub fn read_actions(name: &str, from: &Bound<'_, PyAny>, into: &mut [f32]) -> PyResult<()> {
     let size = into.len();
     let wrong = || {
         refused(format!(
@@ -342,10 +392,3 @@ fn finite(name: &str, values: &[f32]) -> PyResult<()> {
         None => Ok(()),
     }
 }
-
-/// Leagues with wheeled robots.
-const LEAGUES: [League; 3] = [League::DivisionB, League::DivisionA, League::Ssl2013];
-/// Robots of a team, as division A has them.
-const ROBOTS_MAX: usize = 11;
-/// Longest control period, ms: robots brake where an order is older (`order_lasts`).
-const PERIOD_MAX_MS: u32 = 100;

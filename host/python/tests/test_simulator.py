@@ -226,7 +226,7 @@ class Edges(unittest.TestCase):
             ("own", lambda: onetwo.Simulator(own=-1)),
             ("own", lambda: onetwo.Simulator(own="3")),
             ("own", lambda: onetwo.Simulator(own=1.5)),
-            ("own", lambda: onetwo.Simulator(own=None)),
+            ("own", lambda: onetwo.Simulator(own=b"1")),
             ("opponents", lambda: onetwo.Simulator(opponents=big)),
             ("period_ms", lambda: onetwo.Simulator(period_ms=2**32)),
             ("time_limit_s", lambda: onetwo.Simulator(time_limit_s="long")),

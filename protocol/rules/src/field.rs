@@ -5,6 +5,7 @@
 
 use geometry::{Field, GoalEnd, Point, Shape, math};
 use heapless::Vec;
+use serde::{Deserialize, Serialize};
 
 use crate::limits::ROBOT_RADIUS;
 
@@ -12,7 +13,7 @@ use crate::limits::ROBOT_RADIUS;
 pub const AREA_SHAPES_MAX: usize = 3;
 
 /// Dimensions of a field.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FieldSpec {
     /// Distance from goal line to goal line.
     pub length: f32,
@@ -61,7 +62,7 @@ pub const LANDMARKS: [Point<Field>; 6] = [
 ];
 
 /// The border of a defence area.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum AreaForm {
     /// A rectangle, as since 2018.
     Box,

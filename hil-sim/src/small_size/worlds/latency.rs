@@ -4,12 +4,13 @@
 use std::collections::VecDeque;
 
 use protocol::Who;
+use serde::{Deserialize, Serialize};
 
 use super::LinkModel;
 use crate::rng::Stream;
 use crate::small_size::{Order, SLOTS};
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(in crate::small_size) struct Latency {
     steps: u64,
     jitter: u32,

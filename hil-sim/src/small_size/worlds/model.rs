@@ -167,6 +167,12 @@ impl RobotSpread {
     }
 }
 
+impl Default for Traits {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
 impl Default for RobotSpread {
     fn default() -> Self {
         Self::NONE

@@ -71,7 +71,7 @@ def trial(
 
 @final
 class Simulator:
-    """Episodes of the Small Size simulator, one control period a step.
+    """Episodes of a task in the Small Size simulator, one control period a step.
 
     Own robots attack the goal at +x. An action is five numbers a robot, clamped to [-1, 1]: forward and left (times the
     robot's greatest speed, 3.5 m/s), turn (times 15 rad/s, counter-clockwise), kick (above 0: kick as soon as the ball
@@ -80,57 +80,123 @@ class Simulator:
     An observation is numbers within ±1, cut off there: the ball's x, y, height, velocity along x and y; for each own
     robot and then each opponent x, y, sine and cosine of the heading, velocity along x and y, turning rate, ball contact
     (0 or 1). Positions are shares of the way from the centre to the boards, the height is m, velocities of the ball are
-    shares of 8 m/s, of robots of 3.5 m/s, turning rates of 15 rad/s."""
+    shares of 8 m/s, of robots of 3.5 m/s, turning rates of 15 rad/s. Under the referee four more: 1 while the ball is in
+    play, whose restart it is (1 own, -1 the opponents'), goals ahead / 10, share of the time that is left.
+
+    Tasks, their rewards and ends: the package's README."""
 
     def __new__(
         cls,
-        own: int = 1,
-        opponents: int = 0,
+        own: int | None = None,
+        opponents: int | None = None,
         *,
+        task: str = "score",
+        agents: int | None = None,
+        teammates_by: str = "none",
+        opponents_by: str | None = None,
+        world: str = "nominal",
         league: str = "division-b",
-        period_ms: int = 25,
-        time_limit_s: float = 30.0,
+        period_ms: int | None = None,
+        time_limit_s: float | None = None,
         seed: int = 0,
     ) -> Simulator:
-        """A simulator, with its first episode begun.
+        """A simulator, with its first episode started. Raises ValueError for a value outside of these.
 
-        own: robots of the own team, 1 to 11. opponents: 0 to 11. league: "division-b", "division-a" or "ssl-2013".
-        period_ms: simulated time of a step, 1 to 100 ms; the physics takes a step each ms. Raises ValueError else."""
+        task: "score", "shoot-at-keeper", "pass-and-receive", "contested-ball", "keep-away", "3v3" or "6v6"; what is None
+        is the task's. own: robots of the own team, 1 to 11. opponents: 0 to 11. agents: own robots, from 0, that
+        `actions` move. teammates_by, opponents_by: who moves the others: "none", "scripted" (on the true state), "coach"
+        (ours: brains, cases and coach, with cameras and radio), "reactive", "marking" or "zone" (the reference teams).
+        world: "nominal", a profile of `onetwo play --world`, "random" (another one for each seed) or "random:SEED".
+        league: "division-b", "division-a" or "ssl-2013". period_ms: simulated time of a step, 1 to 100 ms, 25 unless
+        given; a multiple of 10 where a coach, a reference team or the referee takes part, 30 unless given."""
     def reset(self, seed: int) -> None:
-        """Begins another episode, from random start positions that follow from the seed alone."""
+        """Starts another episode, from random start positions that follow from the seed alone."""
     def step(
         self,
         actions: Buffer | Sequence[float],
         opponent_actions: Buffer | Sequence[float] | None = None,
         into: Buffer | None = None,
     ) -> tuple[float, str | None]:
-        """Plays one period; returns the reward and how the episode ended: "goal", "own_goal", "out" (the ball left the
-        field), "time", or None while it goes on. A finished episode stays as it is.
+        """Plays one period; returns the reward and how the episode ended: "goal", "own_goal", "out", "received", "won",
+        "lost", "time", or None while it goes on. A finished episode stays as it is.
 
-        actions: `action_size` numbers, a buffer of float32 or a flat sequence. opponent_actions: the same for the
-        opponents, who stand still without. into: see `observe`. Raises ValueError for another number of values or one
-        that is not finite.
-
-        The reward is the growth of -(distance ball to the opponents' goal + 0.5 x distance ball to the nearest own
-        robot), m, plus 10 for a goal and minus 10 for an own goal."""
-    def observe(self, into: Buffer) -> None:
-        """Writes the observation into a writable buffer of `observation_size` float32."""
+        actions: `action_size` numbers, a buffer of float32 or a flat sequence. opponent_actions: five for each opponent,
+        only with opponents_by="none"; they stand still without. into: see `observe`. Raises ValueError for another number
+        of values or one that is not finite."""
+    def observe(self, into: Buffer, index: int = 0, opponent: bool = False) -> None:
+        """Writes the observation into a writable buffer of `observation_size` float32: with own robot `index` first of its
+        side, or seen by the opponents, who come first then and attack +x, with their robot `index` first."""
     def state(self) -> dict[str, Any]:
         """The true state: time_s; ball with position (x, y, height, m) and velocity (m/s); own and opponents, lists of
-        robots with position (m), heading (rad), velocity (m/s), turning (rad/s) and ball_contact."""
+        robots with position (m), heading (rad), velocity (m/s), turning (rad/s) and ball_contact; under the referee score
+        (own, opponents) and in_play."""
     def place_ball(self, x: float, y: float, vx: float = 0.0, vy: float = 0.0) -> None:
         """Places the ball on the ground (m), rolling with that velocity (m/s)."""
     def place_robot(self, index: int, x: float, y: float, heading: float = 0.0, *, opponent: bool = False) -> None:
         """Places a robot at rest (m, rad): an own one by its index from 0, or an opponent."""
+    def save(self) -> bytes:
+        """The state of the episode: a simulator that restores it goes on bit for bit, in another process too.
+
+        Where a coach, a reference team or the referee takes part it holds the seed and all orders since, which `restore`
+        plays again; else the whole state, and `restore` takes microseconds."""
+    def restore(self, state: bytes) -> None:
+        """Goes on from a saved state of a simulator with the same settings. Raises ValueError for foreign or damaged bytes,
+        and for those of another version."""
     @property
     def time_s(self) -> float:
         """Simulated time since the episode's start, s."""
     @property
+    def end(self) -> str | None:
+        """How the episode ended; None while it goes on."""
+    @property
+    def score(self) -> tuple[int, int]:
+        """Goals of the own team and of the opponents under the referee; (0, 0) in other tasks."""
+    @property
+    def robots(self) -> tuple[int, int, int]:
+        """Number of own robots, of those that `actions` move, and of opponents."""
+    @property
+    def task(self) -> str:
+        """Name of the task."""
+    @property
+    def opponents_by(self) -> str:
+        """Who moves the opponents."""
+    @property
+    def period_ms(self) -> int:
+        """Simulated time of a step, ms."""
+    @property
     def action_size(self) -> int:
-        """Number of values in `actions`: five for each own robot."""
+        """Number of values in `actions`: five for each robot that they move."""
     @property
     def observation_size(self) -> int:
-        """Number of values in an observation: five for the ball and eight for each robot."""
+        """Number of values in an observation: five for the ball, eight for each robot, four for the referee."""
     @property
     def trace_hash(self) -> str:
         """Hash of every step's state so far: equal for equal episodes."""
+
+@final
+class VectorSimulator:
+    """Many episodes of the same settings, stepped by one call on several threads."""
+
+    ENDS: tuple[str | None, ...] | list[str | None]
+    """Names of the ends by the numbers that `step` writes; None for 0."""
+
+    def __new__(cls, simulator: Simulator, count: int, threads: int) -> VectorSimulator:
+        """`count` episodes, 1 to 10,000, with the settings of `simulator`, from seeds 0 up; on at most `threads` threads, 1 to 256."""
+    def step(
+        self,
+        actions: Buffer | Sequence[float],
+        restarts: Sequence[tuple[int, int]],
+        observations: Buffer,
+        rewards: Buffer,
+        ends: Buffer,
+    ) -> None:
+        """Starts the episodes of `restarts`, (index, seed), again and steps all others; writes observations and rewards
+        (float32) and numbers of `ENDS` (uint8) of all. Raises ValueError as `Simulator.step` does."""
+    def times_s(self) -> list[float]:
+        """Simulated time of each episode, s."""
+    def ended(self) -> list[bool]:
+        """Whether each episode has ended."""
+    def save(self) -> bytes:
+        """The state of all episodes, as `Simulator.save`."""
+    def restore(self, state: bytes) -> None:
+        """As `Simulator.restore`, for as many episodes."""
