@@ -89,6 +89,9 @@ impl CiController {
         self.ci.look(world, events);
         let packets = if self.ci.is_due(world) { self.exchange(world)? } else { Vec::new() };
         referee.follow(&mut self.ci, world, events);
+        while let Some(order) = referee.poll_order() {
+            order.carry_out(world);
+        }
         Ok(packets)
     }
 

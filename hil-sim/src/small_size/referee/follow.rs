@@ -12,7 +12,8 @@ use crate::small_size::{PhysicsEvent, World};
 
 impl InternalReferee {
     /// Takes over the match's state and its new events, and counts this observation; `events` are the world's
-    /// since the last call.
+    /// since the last call. Apply [`Self::poll_order`] afterwards: robots of a team that does not drive are
+    /// moved by hand when the teams change ends.
     pub fn follow(&mut self, game: &mut CiMatch, world: &World, events: &[PhysicsEvent]) {
         let sight = Sight::of(world, events, self.begun.then_some(self.now));
         let passed = if self.begun { sight.time.since(self.now).0 } else { 0 };
@@ -26,11 +27,15 @@ impl InternalReferee {
             self.wait_ends();
         }
         self.state = remote.state;
+        let before = self.stage;
         self.stage = if game.is_over() { Stage::PostGame } else { remote.stage };
         self.next = remote.next();
         self.placement = remote.target();
         self.blue_on_positive = remote.blue_on_positive();
         self.follow_accounts(game);
+        if self.stage == Stage::SecondHalfPre && before != self.stage {
+            self.carry_over(&sight.robots);
+        }
         for event in decided {
             self.metrics.count(&event);
             self.log.push(event);
