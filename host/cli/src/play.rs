@@ -13,6 +13,7 @@ use arena::game::{self, Game, GameConfig, GameReport, MatchLog, StrategyReport, 
 use clap::Args;
 use feed::{CaseExplanations, End, MatchObserver, MatchRunner, RunSettings, SharedLibrary};
 use hil_sim::NativeBackend;
+use hil_sim::small_size::network::ControllerChoice;
 use hil_sim::small_size::worlds::WorldChoice;
 use host::record::Recorder;
 use host::shell::StrategyProcess;
@@ -81,6 +82,10 @@ pub(crate) struct PlayArgs {
     /// The same for blue.
     #[arg(long, value_name = "COMMAND")]
     blue_strategy: Option<String>,
+    /// Play under the league's game controller in its CI mode: its program, which is started for the match,
+    /// or HOST:PORT where one listens (docs/commands.md).
+    #[arg(long, value_name = "PATH|HOST:PORT", requires = "headless")]
+    game_controller: Option<ControllerChoice>,
     /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(short, long, value_name = "NAME")]
     record: Option<PathBuf>,
@@ -114,6 +119,7 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         let command = if team.colour == Colour::Blue { &args.blue_strategy } else { &args.yellow_strategy };
         team.strategy = command.as_deref().map(StrategyProcess::starter);
     }
+    config.controller.clone_from(&args.game_controller);
     let library_handle = library::of_match(&args.directory, args.league)?;
     if let Some(library_handle) = &library_handle {
         config.names = CaseNames::new(library_handle.names());
@@ -308,6 +314,9 @@ fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> i
         if let Some(command) = command {
             text.extend([" --", side, "-strategy ", &quoted(command)]);
         }
+    }
+    if let Some(controller) = &args.game_controller {
+        text.extend([" --headless --game-controller ", &quoted(&controller.to_string())]);
     }
     writeln!(out, "trace {}, to see it again: onetwo play --seed {}{text}", report.trace_hash, args.seed)
 }

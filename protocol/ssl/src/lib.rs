@@ -14,6 +14,7 @@
 //! | [`simulation`] | [`simulation::SimulatorCommand`], [`simulation::RobotControl`] | UDP, 10300; 10301 blue, 10302 yellow |
 //! | [`simulation`] | [`simulation::GrsimPacket`], [`simulation::RobotsStatus`] | UDP, grSim's own: 20011; 30011 blue, 30012 yellow |
 //! | [`controller`] | [`controller::TeamToController`] and its kin | TCP 10007, 10008, length-delimited |
+//! | [`controller::ci`] | [`controller::ci::CiInput`], [`controller::ci::CiOutput`] | TCP 10009, length-delimited |
 //!
 //! [`net`] has the sockets, [`stream`] the framing on TCP, [`log`] the log files of matches.
 //!

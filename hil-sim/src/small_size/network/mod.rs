@@ -6,8 +6,10 @@
 //! for goes through [`Spectator`].
 
 mod autoref;
+mod ci;
 mod commanders;
 mod controller;
+mod controller_process;
 mod failure;
 mod field_loop;
 mod ports;
@@ -17,7 +19,8 @@ mod sync;
 use std::net::{IpAddr, SocketAddr};
 use std::time::Duration;
 
-pub use failure::NetworkError;
+pub use ci::{CiController, ControllerChoice};
+pub use failure::{CiError, NetworkError};
 pub use field_loop::run;
 
 use super::referee::InternalReferee;

@@ -68,10 +68,24 @@ impl InternalReferee {
             return;
         };
         self.ready_since = None;
+        if !self.wait_for(robots, first) {
+            return;
+        }
+        if self.phase() != Phase::Stop && first.reason.is_balls() {
+            // The game is stopped manually, so that the ball can be placed by hand.
+            self.give(RefereeCommand::Stop);
+        } else if self.people_can_help(obstacles) {
+            self.field_staff.called = true;
+            self.give(RefereeCommand::Halt);
+        }
+    }
+
+    /// Waits for this obstacle to go; true once it has lasted longer than the patience, which is reported.
+    pub(super) fn wait_for(&mut self, robots: &[RobotSeen], first: &ReadyObstacle) -> bool {
         let since = *self.waiting.since.get_or_insert(self.now);
         let lasted = self.now.since(since);
         if lasted < self.settings.patience {
-            return;
+            return false;
         }
         let blocked = Blocked { since, lasted, phase: self.phase(), obstacle: *first };
         if let Some(last) = self.metrics.blocks.last_mut().filter(|_| self.waiting.reported) {
@@ -90,13 +104,7 @@ impl InternalReferee {
                 what: What::Blocked { reason },
             });
         }
-        if self.phase() != Phase::Stop && first.reason.is_balls() {
-            // The game is stopped manually, so that the ball can be placed by hand.
-            self.give(RefereeCommand::Stop);
-        } else if self.people_can_help(obstacles) {
-            self.field_staff.called = true;
-            self.give(RefereeCommand::Halt);
-        }
+        true
     }
 
     /// True where robot handlers could resolve an obstacle in a halt.

@@ -24,6 +24,7 @@ mod blocked;
 mod event;
 mod field_staff;
 mod flow;
+mod follow;
 mod judge;
 mod look;
 mod manual;

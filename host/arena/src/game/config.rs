@@ -4,6 +4,7 @@
 use brain::{Approach, BrainConfig};
 use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::AirSettings;
+use hil_sim::small_size::network::ControllerChoice;
 use hil_sim::small_size::referee::{MatchClock, RefereeSettings};
 use hil_sim::small_size::worlds::WorldChoice;
 use host::external::StrategyStarter;
@@ -35,6 +36,8 @@ pub struct GameConfig {
     /// The case base that hosts retrieve from, which must be that of the robots: a host proposes nothing to
     /// robots with another one. None: the one that comes with the league.
     pub cases: Option<CaseBase<'static>>,
+    /// The league's game controller that runs the match; none: the internal referee.
+    pub controller: Option<ControllerChoice>,
 }
 
 /// Configuration of one side of a match.
@@ -97,6 +100,7 @@ impl GameConfig {
                     .copied(),
             ),
             cases: None,
+            controller: None,
         }
     }
 }

@@ -27,6 +27,7 @@ pub use story::{MatchLog, sentence};
 
 use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::compatibility::Profile;
+use hil_sim::small_size::network::{CiController, CiError};
 use hil_sim::small_size::referee::InternalReferee;
 use hil_sim::small_size::worlds::WorldModel;
 use hil_sim::small_size::{PhysicsEvent, World};
@@ -66,7 +67,9 @@ pub trait Watcher {
 pub struct Game<'a> {
     world: World,
     cameras: Cameras,
+    /// The referee; where a game controller runs the match, its mirror.
     referee: InternalReferee,
+    controller: Option<CiController>,
     teams: [Team<'a>; 2],
     trace: TraceHash,
     tick: u32,
@@ -100,6 +103,9 @@ pub enum GameError {
         /// The operating system's error.
         error: std::io::Error,
     },
+    /// The league's game controller.
+    #[error(transparent)]
+    Controller(#[from] CiError),
     /// A team's own strategy does not answer any more.
     #[error("{0}")]
     StrategyFailed(String),
@@ -122,10 +128,14 @@ impl<'a> Game<'a> {
         world.add_bystanders(model.bystanders);
         let Ok(teams) = <[Team<'a>; 2]>::try_from(teams) else { unreachable!("two set-ups give two teams") };
         let cameras = Cameras::of_model(Profile::Ours, 0.0, &world, model.vision, config.seed);
+        let geometry = || cameras.geometry(&world, None);
+        let start = |choice| CiController::start(choice, &config.referee, config.seed, geometry());
+        let controller = config.controller.as_ref().map(start).transpose()?;
         Ok(Self {
             world,
             cameras,
             referee,
+            controller,
             teams,
             trace: TraceHash::default(),
             tick: 0,
@@ -201,7 +211,7 @@ impl<'a> Game<'a> {
     /// Runs 10 ms: brains step and order, then physics moves, cameras capture and the referee judges.
     pub fn step(&mut self, watcher: &mut dyn Watcher) -> Result<(), GameError> {
         self.advance(watcher)?;
-        self.judge(watcher);
+        self.judge(watcher)?;
         let mut holds = std::mem::take(&mut self.holds);
         holds.look(self);
         self.holds = holds;
@@ -265,8 +275,14 @@ impl<'a> Game<'a> {
         failed.map_or(Ok(()), |words| Err(GameError::StrategyFailed(words)))
     }
 
-    fn judge(&mut self, watcher: &mut dyn Watcher) {
+    fn judge(&mut self, watcher: &mut dyn Watcher) -> Result<(), GameError> {
         let now = self.now();
+        if let Some(controller) = &mut self.controller {
+            for packet in controller.look(&mut self.world, &self.events, &mut self.referee)? {
+                self.announce(now, &packet, watcher);
+            }
+            return Ok(());
+        }
         self.referee.look(&self.world, &self.events);
         while let Some(packet) = self.referee.poll_packet() {
             self.announce(now, &packet, watcher);
@@ -274,6 +290,7 @@ impl<'a> Game<'a> {
         while let Some(order) = self.referee.poll_order() {
             order.carry_out(&mut self.world);
         }
+        Ok(())
     }
 
     /// Delivers a packet of the referee to both teams.

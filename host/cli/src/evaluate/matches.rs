@@ -58,6 +58,10 @@ pub(super) struct MatchesArgs {
     /// (docs/strategy-protocol.md).
     #[arg(long, value_name = "COMMAND")]
     strategy: Option<String>,
+    /// Play every match under the league's game controller in its CI mode: its program, which is started for
+    /// each match, or HOST:PORT where one listens (with --jobs 1).
+    #[arg(long, value_name = "PATH|HOST:PORT")]
+    game_controller: Option<String>,
     /// Opponents, with commas between: reactive, marking, zone (these three by default), idle, ours, round-1
     /// (ours by thresholds and cases, whatever is usual), or ours with other tactics, such as
     /// ours-without-second-level, ours-without-cases or ours-with-coerce+pass-ahead.
@@ -166,6 +170,7 @@ impl MatchesArgs {
             pairings,
             matches: self.matches,
             strategy: self.strategy.clone(),
+            controller: self.game_controller.clone(),
         }
     }
 

@@ -45,6 +45,7 @@ pub use row::{MatchRow, MatchSide};
 use crate::store::{Difference, EvaluationError, Experiment, StoredExperiment};
 use arena::CaseNames;
 use arena::game::{GameConfig, GameError, NoWatcher, play};
+use hil_sim::small_size::network::ControllerChoice;
 
 /// All settings that the matches of a plan depend on.
 #[derive(Clone, Debug)]
@@ -100,6 +101,9 @@ impl MatchIdentity {
             Difference::of("strategy's command", (&own.strategy, &theirs.strategy), |command| {
                 command.clone().unwrap_or_else(|| "none".to_owned())
             }),
+            Difference::of("game controller", (&own.controller, &theirs.controller), |controller| {
+                controller.clone().unwrap_or_else(|| "none".to_owned())
+            }),
         ];
         differences.into_iter().flatten().collect()
     }
@@ -114,6 +118,7 @@ impl Matches {
         let mut config = config.between(blue.team, yellow.team);
         config.world = self.plan.world.of_match(planned.seed);
         config.names = self.names.clone();
+        config.controller = self.plan.controller.as_deref().map(ControllerChoice::from);
         config.cases = Some(self.base);
         for team in &mut config.teams {
             team.settings = self.settings.clone();

@@ -36,6 +36,10 @@ pub struct MatchPlan {
     /// The command of the strategy that gives the orders of the team `strategy`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strategy: Option<String>,
+    /// The league's game controller that runs every match, as `--game-controller` takes it; none: the
+    /// internal referee.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub controller: Option<String>,
 }
 
 /// A match of a plan.
@@ -130,6 +134,7 @@ mod tests {
             pairings,
             matches: 4,
             strategy: None,
+            controller: None,
         };
         let all: Vec<_> = (0..plan.len()).filter_map(|number| plan.get(number)).collect();
         assert_eq!((all.len(), plan.get(12)), (12, None));

@@ -23,6 +23,7 @@ fn plan(seed: u64, duration_s: f64, matches: u32, opponents: &[MatchTeam]) -> Ma
         pairings: MatchPlan::against(MatchTeam::ours(), opponents),
         matches,
         strategy: None,
+        controller: None,
     }
 }
 

@@ -5,6 +5,7 @@
 //! out.
 
 mod autoref;
+pub mod ci;
 
 use prost::{Enumeration, Message, Oneof};
 

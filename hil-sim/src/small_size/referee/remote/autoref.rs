@@ -33,7 +33,7 @@ pub enum Decider {
 #[derive(Clone, Debug)]
 pub struct AutoReferee {
     decider: Decider,
-    watch: Watch,
+    pub(super) watch: Watch,
     looked: Option<Instant>,
     commands: u64,
     /// Time at which an event that stops the game was reported, while the controller has not reacted.

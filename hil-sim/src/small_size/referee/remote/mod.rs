@@ -7,6 +7,9 @@
 
 mod assistant;
 mod autoref;
+mod ci;
+mod decided;
+mod operator;
 mod places;
 #[cfg(test)]
 mod tests;
@@ -20,6 +23,7 @@ use ssl::referee as packet;
 
 pub use assistant::{Assistant, AssistantReason, Deed};
 pub use autoref::{AutoReferee, Decider};
+pub use ci::CiMatch;
 
 use super::account::{Account, Accounts};
 use super::event::Restart;
@@ -32,16 +36,16 @@ use super::{NoRules, wire};
 pub struct RemoteMatch {
     field: FieldSpec,
     limits: Limits,
-    state: GameState,
-    stage: Stage,
-    command: Option<RefereeCommand>,
-    newest: Option<packet::Referee>,
+    pub(super) state: GameState,
+    pub(super) stage: Stage,
+    pub(super) command: Option<RefereeCommand>,
+    pub(super) newest: Option<packet::Referee>,
     received: Instant,
     now: Instant,
-    accounts: Accounts,
-    ball_at_command: Point<Field>,
+    pub(super) accounts: Accounts,
+    pub(super) ball_at_command: Point<Field>,
     /// Number of commands so far.
-    commands: u64,
+    pub(super) commands: u64,
 }
 
 impl RemoteMatch {
@@ -131,7 +135,7 @@ impl RemoteMatch {
         scene::own_end(self.blue_on_positive(), team)
     }
 
-    fn blue_on_positive(&self) -> bool {
+    pub(super) fn blue_on_positive(&self) -> bool {
         self.newest.as_ref().and_then(|newest| newest.blue_team_on_positive_half).unwrap_or(false)
     }
 
