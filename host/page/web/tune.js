@@ -39,7 +39,7 @@ function draw() {
   if (tab.contains(document.activeElement) && document.activeElement.matches("input")) return;
   fill(tab, `${version} ${store.scene?.robots.length} ${store.state.powers} ${store.state.may_ask} ${store.state.recorded}`, () => [
     el("p", { id: "tune-note", class: "muted", role: "status" }, note()),
-    el("input", { id: "tune-search", class: "wide", type: "search", placeholder: "Search names and meanings", "aria-label": "Search parameters", value: sought, oninput: (event) => search(event.target.value) }),
+    el("input", { id: "tune-search", type: "search", placeholder: "Search names and meanings", "aria-label": "Search parameters", value: sought, oninput: (event) => search(event.target.value) }),
     ...teams.flatMap(team),
   ]);
   search(sought);

@@ -128,7 +128,8 @@ fn a_robot_driven_by_hand_stands_when_the_page_is_silent_and_in_a_halt() {
     tab.wait("onetwo.store.newest.game.phase === 'run'").unwrap();
     tab.eval("document.getElementById('hand-robot').value = 'blue 3'").unwrap();
     let robot = "onetwo.store.newest.robots.find((r) => r.team === 'blue' && r.id === 3)";
-    let moves = format!("Math.hypot(...{robot}.velocity) > 0.35 && {robot}.mind.why === 'a robot is driven by hand'");
+    let moves =
+        format!("Math.hypot(...{robot}.velocity) > 0.35 && {robot}.mind.why === 'a robot is driven by hand'");
     let stands = "onetwo.store.newest.robots.filter((r) => r.team === 'blue').every((r) => Math.hypot(...r.velocity) < 0.05)";
     let hold = |tab: &mut Tab<'_>, kind: &str| {
         tab.eval(&format!(
