@@ -139,7 +139,8 @@ pub enum Powers {
     None,
     /// HALT: a real field.
     Halt,
-    /// HALT, parameters, tests of kickers and drives by hand: a real field, where the operator has allowed it.
+    /// HALT, parameters, tests of kickers and drives by hand: a real field, where the operator has allowed
+    /// it.
     Tune,
     /// Everything: the match is simulated.
     Simulation,

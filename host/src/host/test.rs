@@ -1,4 +1,5 @@
-//! `test`: one robot for itself, as the operator begins and ends it: a test of its kicker, or a drive by hand.
+//! `test`: one robot for itself, as the operator begins and ends it: a test of its kicker, or a drive by
+//! hand.
 
 use protocol::{Instant, RobotId};
 

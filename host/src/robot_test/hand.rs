@@ -1,5 +1,5 @@
-//! `hand`: one robot driven by hand: body speeds, dribbler and kick, which end 100 ms after the last order. m,
-//! m/s, rad/s, attack frame.
+//! `hand`: one robot driven by hand: body speeds, dribbler and kick, which end 100 ms after the last order.
+//! m, m/s, rad/s, attack frame.
 //!
 //! The protocol has places, not speeds: the target lies as far ahead as the robot needs to brake from the
 //! ordered speed. So it drives at that speed, around obstacles, and stops there by itself if no more comes.
@@ -21,7 +21,8 @@ pub const SPEED_MAX_M_S: f32 = 2.0;
 pub const TURN_MAX_RAD_S: f32 = 6.0;
 /// Slowest kick, m/s: slower ones are not told from a touch.
 pub const KICK_MIN_M_S: f32 = 1.0;
-/// From the camera frame to the wheels, s: measured in the simulator, so that 0.2 to 2 m/s are driven within 2 %.
+/// From the camera frame to the wheels, s: measured in the simulator, so that 0.2 to 2 m/s are driven within
+/// 2 %.
 const LEAD_S: f32 = 0.013;
 /// A ball within this distance of the dribbler is taken by a robot whose dribbler is on, m.
 const TAKES_WITHIN_M: f32 = 0.3;

@@ -1,4 +1,5 @@
-//! `requests`: what an operator asks for while robots play: HALT, parameters, tests of kickers, drives by hand.
+//! `requests`: what an operator asks for while robots play: HALT, parameters, tests of kickers, drives by
+//! hand.
 
 use super::Request;
 use super::event_loop::EventLoop;
@@ -43,7 +44,8 @@ impl EventLoop<'_> {
         Ok(line)
     }
 
-    /// Starts or ends a test or a drive; a line that says so, none for each further order of a hand, or why not.
+    /// Starts or ends a test or a drive; a line that says so, none for each further order of a hand, or why
+    /// not.
     fn test(&mut self, order: TestOrder) -> Result<Option<String>, String> {
         let (now, driven) = (self.now(), self.host.driven());
         if let InputVerdict::NoTest(refused) = self.feed(now, Input::Test(order.to_json().as_bytes())) {

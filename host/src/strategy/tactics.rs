@@ -89,7 +89,8 @@ impl Tactics {
         if description.is_empty() { "none".to_owned() } else { description.join(",") }
     }
 
-    /// From `none`, `all`, `default` (`usual` until version 0.2), [`ROUND_1`], or names with commas between, such as `threats,pass-ahead`.
+    /// From `none`, `all`, `default` (`usual` until version 0.2), [`ROUND_1`], or names with commas between,
+    /// such as `threats,pass-ahead`.
     pub fn parse(text: &str) -> Result<Self, String> {
         match text {
             "none" => return Ok(Self::NONE),

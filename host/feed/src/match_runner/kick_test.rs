@@ -1,6 +1,6 @@
-//! `kick_test`: one robot for itself in a simulated match, whose kicker is tested or that is driven by hand: the
-//! other team stands, and the ball comes back to the middle after every kick and when it has left the field, as
-//! a person beside a real field would put it there.
+//! `kick_test`: one robot for itself in a simulated match, whose kicker is tested or that is driven by hand:
+//! the other team stands, and the ball comes back to the middle after every kick and when it has left the
+//! field, as a person beside a real field would put it there.
 
 use std::time::Instant;
 
