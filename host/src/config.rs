@@ -16,7 +16,7 @@
 //! tracker = "224.5.23.2:10010"
 //! game_controller = "127.0.0.1:10008"   # the team's port; left out: no messages to the controller
 //! strategy = "python3 my_team.py" # program that gives the orders; left out: the program's own coach does
-//! tactics = "usual"               # of the coach; none, all, or some of their names
+//! tactics = "default"             # of the coach; none, all, or some of their names
 //!
 //! [[calibration]]                 # how a robot deviates from what is ordered
 //! robot = 3
@@ -280,7 +280,7 @@ impl TeamSettings {
             kick[id.index()] = parameters::KICK.checked(factor).map_err(named)?;
         }
         let roll = self.ball.roll.map(|roll| parameters::ROLL.checked(roll)).transpose()?;
-        let tactics = Tactics::parse(self.tactics.as_deref().unwrap_or("usual"));
+        let tactics = Tactics::parse(self.tactics.as_deref().unwrap_or("default"));
         Ok(TeamConfig {
             name: self.name.unwrap_or_else(|| "onetwo".to_owned()),
             colour: colour(self.colour.as_deref().unwrap_or("blue"))?,

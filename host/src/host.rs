@@ -164,12 +164,13 @@ impl Host {
             Input::Robot(bytes) => self.handle_robot(now, bytes),
             Input::Orders(line) => self.handle_orders(now, line),
             Input::Parameter(json) => self.handle_parameter(json),
-            Input::Test(json) => self.handle_test(json),
+            Input::Test(json) => self.handle_test(now, json),
             Input::Halt => {
                 self.halt(now);
                 InputVerdict::Halted
             }
             Input::Timeout => {
+                self.expire_hand(now);
                 self.radio.handle_timeout(now);
                 InputVerdict::Timeout
             }
@@ -202,7 +203,8 @@ impl Host {
 
     /// When the next [`Input::Timeout`] is due, unless another input comes before.
     pub fn poll_timeout(&self) -> Option<Instant> {
-        self.radio.poll_timeout()
+        let hand = self.test.as_ref().and_then(RobotTest::until);
+        self.radio.poll_timeout().into_iter().chain(hand).min()
     }
 
     fn handle_vision(&mut self, now: Instant, bytes: &[u8]) -> InputVerdict {

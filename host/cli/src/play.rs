@@ -68,12 +68,12 @@ pub(crate) struct PlayArgs {
     /// Robots of each team; the league's number by default.
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=11))]
     robots: Option<u8>,
-    /// Yellow's tactics of the second paper, if it is ours: none, all, usual, round-1, or names such as
+    /// Yellow's tactics of the second paper, if it is ours: none, all, default, round-1, or names such as
     /// threats,pass-ahead.
-    #[arg(long, value_name = "TACTICS", default_value = "usual", value_parser = Tactics::parse)]
+    #[arg(long, value_name = "TACTICS", default_value = "default", value_parser = Tactics::parse)]
     yellow_tactics: Tactics,
     /// The same for blue.
-    #[arg(long, value_name = "TACTICS", default_value = "usual", value_parser = Tactics::parse)]
+    #[arg(long, value_name = "TACTICS", default_value = "default", value_parser = Tactics::parse)]
     blue_tactics: Tactics,
     /// A program that gives yellow's orders: it gets the view as a line of JSON and answers with one
     /// (docs/strategy-protocol.md).

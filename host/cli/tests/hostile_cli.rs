@@ -363,7 +363,7 @@ fn field_names_cards_robots_and_places_of_a_recording_are_reported() {
     let cards: u64 =
         ["blue", "yellow"].iter().filter_map(|team| report["teams"][team]["yellow_cards"].as_u64()).sum();
     assert_eq!(cards, 1, "README of the recordings: one yellow card");
-    let match_events = report["happenings"].as_array().unwrap();
+    let match_events = report["events"].as_array().unwrap();
     let named = |name: &str| match_events.iter().filter(|h| h["name"] == name).collect::<Vec<_>>();
     assert_eq!(named("YELLOW_CARD").len(), 1);
     assert!(!named("MAX_BOTS").is_empty(), "a card takes a robot off");

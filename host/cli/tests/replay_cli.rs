@@ -55,7 +55,7 @@ fn a_recording_of_grsim_and_the_game_controller_is_counted() {
     let report = json(&[&recording("grsim_divB_22s.log.gz")], 0);
     assert_eq!((&report["kind"], &report["undecodable"]), (&"log".into(), &0.into()));
     assert_eq!(report["cameras"].as_object().map(serde_json::Map::len), Some(4), "grSim has four cameras");
-    let names: Vec<_> = report["happenings"].as_array().expect("a list").iter().map(|h| &h["name"]).collect();
+    let names: Vec<_> = report["events"].as_array().expect("a list").iter().map(|h| &h["name"]).collect();
     assert!(
         names.contains(&&"PREPARE_KICKOFF_YELLOW".into()) || names.contains(&&"PREPARE_KICKOFF_BLUE".into()),
         "{names:?}"
@@ -79,7 +79,7 @@ fn gzipped_and_indexed_tell_the_same() {
 fn an_event_is_found_and_the_field_displayed_as_it_was() {
     let file = recording("grsim_divB_noisy_64s.log.gz");
     let report = json(&[&file], 0);
-    let stops: Vec<f64> = (report["happenings"].as_array().expect("a list").iter())
+    let stops: Vec<f64> = (report["events"].as_array().expect("a list").iter())
         .filter(|h| h["name"] == "STOP")
         .filter_map(|h| h["at_s"].as_f64())
         .collect();

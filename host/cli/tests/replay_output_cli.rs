@@ -161,7 +161,7 @@ fn a_table_agrees_with_a_moment_and_csv_with_jsonl() {
         .filter(|row| !row["events"].is_empty())
         .map(|row| row["events"].split("; ").count())
         .sum();
-    assert_eq!(exported, summary["happenings"].as_array().expect("events").len());
+    assert_eq!(exported, summary["events"].as_array().expect("events").len());
 }
 
 #[test]

@@ -80,6 +80,7 @@ fn reason(why: &OrderReason) -> String {
         | OrderReason::External
         | OrderReason::ExternalSilent
         | OrderReason::Test
+        | OrderReason::ByHand
         | OrderReason::Coercing { .. } => why.to_string(),
         // Reasons without a label of their own are printed by their name.
         other => spaced(&format!("{other:?}")),

@@ -182,9 +182,12 @@ impl<'f> MatchRunner<'f> {
             while let Some(request) = self.page.next_request() {
                 let mut watchers = Watchers(vec![&mut feed, observer.watcher()]);
                 if let Some(done) = change_host(&request, &mut game, &mut tests, &mut watchers) {
-                    feed.parameters.hasten();
                     match done {
-                        Ok(done) => self.page.push(MatchEvent::fault(game.time(), done)),
+                        Ok(None) => {}
+                        Ok(Some(done)) => {
+                            feed.parameters.hasten();
+                            self.page.push(MatchEvent::fault(game.time(), done));
+                        }
                         Err(reason) => self.page.refuse(reason),
                     }
                     continue;
@@ -202,6 +205,7 @@ impl<'f> MatchRunner<'f> {
             controls.steps = controls.steps.saturating_sub(1);
             let begun = Instant::now();
             feed.t = game.time();
+            tests.hold(&mut game, &mut Watchers(vec![&mut feed, observer.watcher()]));
             game.step(&mut Watchers(vec![&mut feed, observer.watcher()]))?;
             controls.took = (controls.took * 15 + begun.elapsed()) / 16;
             tests.tend(&mut game);
@@ -326,7 +330,7 @@ impl<'f> MatchRunner<'f> {
                 }
             }
             // Handled before: they go through the watchers.
-            UserRequest::Parameter { .. } | UserRequest::Kicks { .. } => {}
+            UserRequest::Parameter { .. } | UserRequest::Kicks { .. } | UserRequest::Drive { .. } => {}
             UserRequest::Save {} => {
                 refused = Some("a simulated match has no team's file: copy the text, or download it".into());
             }
@@ -351,25 +355,26 @@ impl<'f> MatchRunner<'f> {
     }
 }
 
-/// Passes on what a host itself takes, which is recorded; what was done or why not, none: it is for the
-/// match.
+/// Passes on what a host itself takes, which is recorded: what was done, if it is worth an event, or why not;
+/// none: it is for the match.
 fn change_host(
     request: &UserRequest,
     game: &mut Game<'_>,
     tests: &mut KickTests,
     watchers: &mut Watchers<'_>,
-) -> Option<Result<String, String>> {
+) -> Option<Result<Option<String>, String>> {
     Some(match request {
         UserRequest::Parameter { team, key, robot, value } => {
             let team = colour(*team);
             change_of(key, *robot, value.as_ref()).and_then(|change| {
                 game.change(team, &change, watchers).map_err(|refused| refused.to_string())?;
-                Ok(format!("{}: {}", team.label(), change_text(&change)))
+                Ok(Some(format!("{}: {}", team.label(), change_text(&change))))
             })
         }
-        UserRequest::Kicks { team, robot, kicks } => tests
-            .order(game, colour(*team), (*robot, *kicks), watchers)
-            .map_err(|refused| refused.to_string()),
+        UserRequest::Kicks { .. } | UserRequest::Drive { .. } => {
+            let (team, order) = test_of(request)?;
+            tests.order(game, colour(team), order, watchers).map_err(|refused| refused.to_string())
+        }
         _ => return None,
     })
 }

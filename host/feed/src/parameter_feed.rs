@@ -8,7 +8,7 @@ use host::config::parameters::ParameterValue;
 use host::config::{ParameterChange, TeamConfig};
 use host::learned::Learned;
 use host::robot_test::{KickReport, TestOrder, TestState};
-use page::{Page, PageTeam, milli};
+use page::{Page, PageTeam, UserRequest, milli};
 use protocol::RobotId;
 use serde::Serialize;
 
@@ -134,7 +134,16 @@ pub fn change_of(
     Ok(ParameterChange { key: key.to_owned(), robot, value: value.transpose()? })
 }
 
-/// The test that a viewer asks for.
-pub fn test_of(robot: Option<u8>, kicks: u8) -> TestOrder {
-    robot.map_or(TestOrder::End, |robot| TestOrder::Kick { robot, kicks })
+/// The team and the order of a viewer who asks for a test or a drive; none: another request.
+pub fn test_of(request: &UserRequest) -> Option<(PageTeam, TestOrder)> {
+    Some(match *request {
+        UserRequest::Kicks { team, robot, kicks } => {
+            (team, robot.map_or(TestOrder::End, |robot| TestOrder::Kick { robot, kicks }))
+        }
+        UserRequest::Drive { team, robot, velocity, dribbler, kick } => {
+            let drive = |robot| TestOrder::Drive { robot, velocity, dribbler, kick };
+            (team, robot.map_or(TestOrder::End, drive))
+        }
+        _ => return None,
+    })
 }

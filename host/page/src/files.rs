@@ -56,6 +56,7 @@ files! {
     "skills.js": SCRIPT,
     "tune.js": SCRIPT,
     "kicks.js": SCRIPT,
+    "hand.js": SCRIPT,
     "transport.js": SCRIPT,
     "keys.js": SCRIPT,
     "bench.js": SCRIPT,

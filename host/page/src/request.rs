@@ -108,6 +108,22 @@ pub enum UserRequest {
         #[serde(default)]
         kicks: u8,
     },
+    /// Drive a robot by hand. The order ends 100 ms after it came, and the robot stands.
+    Drive {
+        /// Team of the robot; on a real field ours.
+        team: PageTeam,
+        /// The robot that is driven; none: the drive ends, and the coach gives orders again.
+        robot: Option<u8>,
+        /// Speeds of the body ahead and to the left, m/s, and of its turn, rad/s, counter-clockwise.
+        #[serde(default)]
+        velocity: [f32; 3],
+        /// It takes a ball before it, and carries it.
+        #[serde(default)]
+        dribbler: bool,
+        /// It kicks a ball at its dribbler straight ahead, with this speed of the ball, m/s.
+        #[serde(default)]
+        kick: Option<f32>,
+    },
     /// The referee's command, by its name in the league: `HALT`, `FORCE_START`, `DIRECT_FREE_BLUE`.
     Referee {
         /// Name of the command.
@@ -123,7 +139,8 @@ pub enum Powers {
     None,
     /// HALT: a real field.
     Halt,
-    /// HALT, parameters and tests of kickers: a real field, where the operator has allowed it.
+    /// HALT, parameters, tests of kickers and drives by hand: a real field, where the operator has allowed
+    /// it.
     Tune,
     /// Everything: the match is simulated.
     Simulation,
@@ -147,9 +164,11 @@ impl Powers {
     const fn refusal(self) -> &'static str {
         match self {
             Self::Halt => {
-                "a real field takes nothing but HALT from the page; with --live-parameters parameters and kick tests too"
+                "a real field takes nothing but HALT from the page; with --live-parameters parameters, kick tests and drives by hand too"
             }
-            Self::Tune => "a real field takes nothing but HALT, parameters and kick tests from the page",
+            Self::Tune => {
+                "a real field takes nothing but HALT, parameters, kick tests and drives by hand from the page"
+            }
             Self::None | Self::Simulation => "a recording cannot be changed",
         }
     }
@@ -164,7 +183,14 @@ impl UserRequest {
             Powers::Simulation => true,
             Powers::Halt => matches!(request, Self::Halt {}),
             Powers::Tune => {
-                matches!(request, Self::Halt {} | Self::Parameter { .. } | Self::Save {} | Self::Kicks { .. })
+                matches!(
+                    request,
+                    Self::Halt {}
+                        | Self::Parameter { .. }
+                        | Self::Save {}
+                        | Self::Kicks { .. }
+                        | Self::Drive { .. }
+                )
             }
             Powers::None => false,
         };
@@ -187,6 +213,10 @@ impl UserRequest {
                 let far = at.iter().any(|x| !(-FARTHEST..=FARTHEST).contains(x));
                 far.then_some("a place: within 20 m of the middle")
             }
+            Self::Drive { velocity, kick, .. } => {
+                let odd = velocity.iter().chain(kick).any(|x| !x.is_finite());
+                odd.then_some("a drive: numbers")
+            }
             _ => None,
         };
         let id = match &self {
@@ -194,6 +224,7 @@ impl UserRequest {
             | Self::Power { id, .. }
             | Self::Parameter { robot: Some(id), .. }
             | Self::Kicks { robot: Some(id), .. }
+            | Self::Drive { robot: Some(id), .. }
                 if *id > 15 =>
             {
                 Some("robots: 0 to 15")
@@ -229,6 +260,7 @@ mod tests {
             r#"{"ask":"parameter","team":"blue","key":"ball.roll","value":0.4}"#,
             r#"{"ask":"save"}"#,
             r#"{"ask":"kicks","team":"blue","robot":1,"kicks":10}"#,
+            r#"{"ask":"drive","team":"blue","robot":1,"velocity":[0.5,0,0]}"#,
         ] {
             assert_eq!(
                 UserRequest::read(other, Powers::Halt),
@@ -244,7 +276,8 @@ mod tests {
     fn a_real_field_takes_parameters_only_where_the_operator_allows_it_and_then_no_more() {
         let set = r#"{"ask":"parameter","team":"blue","key":"calibration.kick","robot":3,"value":1.06}"#;
         let kicks = r#"{"ask":"kicks","team":"blue","robot":null}"#;
-        for text in [set, kicks, r#"{"ask":"save"}"#, r#"{"ask":"halt"}"#] {
+        let drive = r#"{"ask":"drive","team":"blue","robot":3,"velocity":[1,0,-2],"dribbler":true,"kick":4}"#;
+        for text in [set, kicks, drive, r#"{"ask":"save"}"#, r#"{"ask":"halt"}"#] {
             assert!(UserRequest::read(text, Powers::Tune).is_ok(), "{text}");
         }
         for other in [r#"{"ask":"pause","on":true}"#, r#"{"ask":"ball","at":[0,0]}"#] {
@@ -262,6 +295,8 @@ mod tests {
             r#"{"ask":"loss","share":1.5}"#,
             r#"{"ask":"ball","at":[1e9,0]}"#,
             r#"{"ask":"robot","team":"blue","id":16,"at":[0,0]}"#,
+            r#"{"ask":"drive","team":"blue","robot":16,"velocity":[0,0,0]}"#,
+            r#"{"ask":"drive","team":"blue","robot":1,"velocity":[1e99,0,0]}"#,
             &format!(r#"{{"ask":"situation","name":"{}"}}"#, "a".repeat(201)),
         ] {
             assert!(

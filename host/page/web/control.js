@@ -1,6 +1,7 @@
 // control: tab Control: the requests that a viewer may send. All in a simulation, HALT on a real field, none in a recording.
 
 import { byId, el, fill, say } from "./dom.js";
+import { handPart, showHand } from "./hand.js";
 import { ask } from "./link.js";
 import { showSkills, skillPart } from "./skills.js";
 import { showSnapshots, snapshotPart } from "./snapshots.js";
@@ -20,6 +21,7 @@ export function showControl() {
   // A recording takes nothing from anybody: there the token makes no difference.
   const shown = mayAsk === false && powers !== "none" ? "locked" : powers;
   fill(tab, `${shown} ${life}`, () => ({ simulation, halt, tune: halt, none, locked })[shown]());
+  showHand();
   if (shown !== "simulation") return;
   showSnapshots();
   showSkills();
@@ -37,8 +39,9 @@ const none = () => el("p", { class: "muted" }, "A recording cannot be changed. E
 const locked = () => el("p", { class: "muted" }, "You are a viewer. To send requests, open the page at the address with ?token= that the program printed when it started.");
 
 const halt = () => [
-  el("p", {}, store.state.powers === "tune" ? "On a real field the page can halt our robots, whatever the referee says, until the program ends, and change parameters (the tab of that name)." : "On a real field the page can do one thing: our robots stand, whatever the referee says, until the program ends."),
+  el("p", {}, store.state.powers === "tune" ? "On a real field the page can halt our robots, whatever the referee says, until the program ends, change parameters (the tab of that name), and drive one of them by hand." : "On a real field the page can do one thing: our robots stand, whatever the referee says, until the program ends."),
   el("button", { class: "danger", id: "halt", onclick: () => ask({ ask: "halt" }) }, "HALT our robots"),
+  ...(store.state.powers === "tune" ? handPart() : []),
 ];
 
 function simulation() {
@@ -61,6 +64,7 @@ function simulation() {
     set(el("label", {}, "Speed"), speed, el("span", { id: "speed-now" }), press("Clock's pace", () => ((speed.value = 0), { ask: "speed", factor: 1 }))),
     set(el("label", {}, "Seed"), seed, press("Restart", () => ({ ask: "restart", seed: Number(seed.value) }), { id: "restart" })),
     ...situations(press, set),
+    ...handPart(),
     ...snapshotPart(),
     ...skillPart(),
     el("h2", {}, "Referee"),

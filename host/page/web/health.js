@@ -36,18 +36,16 @@ function vitals(robots) {
   const cell = (value, digits, bad) => el("td", { class: `n${bad ? " bad" : ""}` }, number(value, digits));
   const rows = robots.map(({ team, id, vitals: v }) => el("tr", { class: "pick", title: `${v.refused} frames refused, ${v.lives === 1 ? "booted once" : `booted ${v.lives} times`}`, onclick: () => choose(team, id) },
     el("td", {}, el("button", { class: `chip ${team}`, "data-vitals": `${team}${id}`, "aria-label": `${team} ${id}` }, String(id))),
-    el("td", { class: v.faults.length ? "bad" : "fine" }, v.faults.join(", ") || [v.ball ? "ball" : "", v.governed ? "limited" : ""].filter(Boolean).join(", ") || "ok"),
+    el("td", { class: v.faults.length ? "bad" : "fine" }, v.faults.join(", ") || [v.ball ? "ball" : "", v.governed ? "limited" : ""].filter(Boolean).join(", ") || "ok", el("small", { class: "muted" }, v.kicker ? "charged" : "not charged")),
     cell(v.battery, 1, v.battery != null && v.battery < 14.4),
     windowed(v.link?.trip_ms, 1, over(40)), windowed(v.link?.loss_down, 1, over(10)), windowed(v.link?.loss_up, 1, over(10)),
     windowed(v.link?.frames, 0, under(10)), windowed(v.link?.telemetry, 0, under(2)), windowed(v.link?.kbps, 0, () => false),
-    cell(v.telemetry_ms, 0, v.telemetry_ms > 500), cell(v.silence_ms, 0, v.silence_ms > 100), cell(v.unseen_ms, 0, v.unseen_ms > 200),
-    el("td", {}, v.kicker ? "charged" : "not ready")));
+    cell(v.telemetry_ms, 0, v.telemetry_ms > 500), cell(v.silence_ms, 0, v.silence_ms > 100), cell(v.unseen_ms, 0, v.unseen_ms > 200)));
   return [scroll("Robots and their links", el("table", { class: "tight" },
-    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "robot"), el("th", { scope: "col" }, "state"), head("V", "battery voltage"), head("RTT", "mean round-trip time of the radio, ms"), head("loss ↓", "frames lost on the way to the robot, %"), head("↑ %", "frames lost on the way from it, %"),
-      head("fr/s", "frames received a second"), head("tel/s", "telemetry received a second"), head("kbit/s", "frames of both directions"), head("report", "since its last telemetry, ms"), head("heard", "since it was last heard, ms"), head("seen", "since a camera last saw it, ms"),
-      el("th", { scope: "col" }, "capacitor"))),
+    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "robot"), el("th", { scope: "col", title: "faults, else what it does; below it the kicker's capacitor" }, "state"), head("V", "battery voltage"), head("RTT", "mean round-trip time of the radio, ms"), head("loss ↓", "frames lost on the way to the robot, %"), head("↑ %", "frames lost on the way from it, %"),
+      head("fr/s", "frames received a second"), head("tel/s", "telemetry received a second"), head("kbit/s", "frames of both directions"), head("report", "since its last telemetry, ms"), head("heard", "since it was last heard, ms"), head("seen", "since a camera last saw it, ms"))),
     el("tbody", {}, rows))),
-    el("p", { class: "muted" }, "RTT to kbit/s: over 1 s, below it the worst such second within 10 s. report, heard, seen (the table scrolls sideways): ms since its telemetry, any frame, a camera. Capacitor voltage, temperatures and firmware version: not reported, telemetry has no field for them.")];
+    el("p", { class: "muted" }, "RTT to kbit/s: over 1 s, below it the worst such second within 10 s. report, heard, seen: ms since its telemetry, any frame, a camera. Capacitor voltage, temperatures and firmware version: not reported, telemetry has no field for them.")];
 }
 
 function cameras(list) {

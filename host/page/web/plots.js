@@ -38,7 +38,7 @@ export function plotPart(into, scene) {
     if (!slot) continue;
     slot.textContent = `${number(gauge.value, Math.abs(gauge.value) < 10 ? 2 : 0)} ${gauge.unit}`;
     const over = gauge.limit != null && (gauge.limit < 0 ? gauge.value < -gauge.limit : gauge.value > gauge.limit);
-    slot.style.color = over ? colours.bad : "";
+    slot.style.color = over ? "var(--bad)" : "";
   }
 }
 

@@ -13,6 +13,7 @@ let teams = [];
 let asked = 0;
 let version = 0;
 let text = "[]";
+let sought = "";
 
 async function more() {
   if (performance.now() - asked < EVERY) return;
@@ -38,8 +39,22 @@ function draw() {
   if (tab.contains(document.activeElement) && document.activeElement.matches("input")) return;
   fill(tab, `${version} ${store.scene?.robots.length} ${store.state.powers} ${store.state.may_ask} ${store.state.recorded}`, () => [
     el("p", { id: "tune-note", class: "muted", role: "status" }, note()),
+    el("input", { id: "tune-search", type: "search", placeholder: "Search names and meanings", "aria-label": "Search parameters", value: sought, oninput: (event) => search(event.target.value) }),
     ...teams.flatMap(team),
   ]);
+  search(sought);
+}
+
+/** Shows the parameters whose name or meaning has every word, and those read at the start only where one is found. */
+function search(words) {
+  sought = words;
+  const all = words.toLowerCase().split(/\s+/).filter(Boolean);
+  for (const one of byId("tab-tune").querySelectorAll(".param")) one.hidden = !all.every((word) => one.dataset.about.includes(word));
+  for (const part of byId("tab-tune").querySelectorAll("details[data-start]")) {
+    const found = part.querySelectorAll(".param:not([hidden])").length > 0;
+    part.hidden = !found;
+    if (all.length) part.open = found;
+  }
 }
 
 function note() {
@@ -87,7 +102,7 @@ function row(name, one, first) {
   const range = one.range ? `, ${one.range[0]} to ${one.range[1]}${one.unit && ` ${one.unit}`}` : one.unit ? `, ${one.unit}` : "";
   const about = el("small", { class: "muted", id: `${id}-about`, hidden: !first }, `${one.meaning}${range}${one.default == null ? "" : `; default: ${one.default}`}`);
   const value = one.live && mayChange() ? box(name, one, id) : el("output", { id, class: "value" }, words(one.value) || "–");
-  return el("div", { class: differs ? "param differs" : "param", "data-key": label },
+  return el("div", { class: differs ? "param differs" : "param", "data-key": label, "data-about": `${label} ${one.meaning}`.toLowerCase() },
     el("label", { for: id }, label), value, el("span", { class: "unit" }, one.unit), about);
 }
 

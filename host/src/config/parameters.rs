@@ -37,7 +37,7 @@ pub struct Parameter {
 enum Holds {
     /// One value for the team.
     Once(fn(&TeamConfig) -> Option<Value>),
-    /// One value for each robot that has another than the usual.
+    /// One value for each robot that has another than the default.
     EachRobot(fn(&TeamConfig, RobotId) -> Option<Value>),
 }
 
@@ -96,7 +96,7 @@ impl Parameter {
         }
     }
 
-    /// The robots that have another value than the usual, with it.
+    /// The robots that have another value than the default, with it.
     pub(super) fn robots(&self, config: &TeamConfig) -> Vec<(RobotId, Value)> {
         match self.value {
             Holds::Once(_) => Vec::new(),
@@ -131,7 +131,7 @@ impl fmt::Display for Parameter {
 
 impl TeamConfig {
     /// Every parameter with its value, in the file's order; one of each robot once for each that has another
-    /// than the usual, and once without a robot where none has.
+    /// than the default, and once without a robot where none has.
     pub fn parameters(&self) -> Vec<ParameterValue> {
         let usual = TeamSettings::default().complete().ok();
         let mut list = Vec::new();
@@ -286,7 +286,7 @@ pub const PARAMETERS: [Parameter; 20] = [
         live: true,
         ..usual(
             "tactics",
-            "the coach's: usual, none, all, round-1, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated, by-score",
+            "the coach's: default, none, all, round-1, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated, by-score",
             |config| Some(text_of(&config.tactics.description())),
         )
     },

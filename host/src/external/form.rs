@@ -311,7 +311,10 @@ impl StrategyOrder {
         let task = match order.task {
             Task::Stand => StrategyTask::Stand,
             Task::Gameplay | Task::Case(_) => StrategyTask::PlayCases,
-            Task::GoTo { at, face } => StrategyTask::GoTo { at: pair(at), face: face.radians() },
+            // No coach orders to dribble: a hand does, and only where no other program gives the orders.
+            Task::GoTo { at, face } | Task::Dribble { at, face } => {
+                StrategyTask::GoTo { at: pair(at), face: face.radians() }
+            }
             Task::GetBall { face } => StrategyTask::GetBall { face: pair(face) },
             Task::Kick { at, kick: kick @ KickOrder::Flat(_) } => {
                 StrategyTask::Kick { at: pair(at), speed: speed(kick) }

@@ -23,7 +23,7 @@ pub enum Input<'a> {
     /// The operator changes a parameter: the JSON of a
     /// [`ParameterChange`](crate::config::ParameterChange).
     Parameter(&'a [u8]),
-    /// The operator begins or ends a test of a kicker: the JSON of a
+    /// The operator begins or ends a test of a kicker, or drives a robot by hand: the JSON of a
     /// [`TestOrder`](crate::robot_test::TestOrder).
     Test(&'a [u8]),
     /// The operator halts our robots until the end of the program.

@@ -1,22 +1,26 @@
-//! `robot_test`: the test of a robot's kicker on the field. One robot kicks a resting ball again and again,
-//! at several speeds; the tracker sees how fast the ball leaves, and the gain of the kicker is fitted. m,
-//! m/s.
+//! `robot_test`: one robot on the field for itself: its kicker is tested, or it is driven by hand ([`hand`]).
+//! In the test it kicks a resting ball again and again, at several speeds; the tracker sees how fast the ball
+//! leaves, and the gain of the kicker is fitted. m, m/s.
 //!
 //! The operator begins and ends it ([`crate::Input::Test`]), so that a trace replays it. It gives orders in
 //! open play alone, and in every other phase the coach does, so that the rules are kept: HALT and STOP hold
 //! as in a match. While it lasts, and when it is over, all other robots of the team stand.
 
+mod hand;
 mod line;
 
 use geometry::{Attack, Point, Vector};
 use protocol::host::{HostCommand, KickOrder};
 use protocol::{Instant, RobotId};
-use rules::{Colour, Phase};
+use rules::{Colour, Phase, RobotSpec};
 use serde::{Deserialize, Serialize};
 
+use self::hand::Hand;
 use crate::learned::{Estimate, Kicks};
 use crate::strategy::{Order, OrderReason, Orders, Role, Task, View};
 use crate::world::World;
+
+pub use hand::{HAND_EXPIRY, KICK_MIN_M_S, SPEED_MAX_M_S, TURN_MAX_RAD_S};
 
 /// Fewest kicks of a test: of five, two may be spoiled.
 const KICKS_LEAST: u8 = 5;
@@ -34,7 +38,7 @@ const RESTING_SPEED_MAX_M_S: f32 = 0.3;
 const SAME_PLACE_WITHIN_M: f32 = 0.4;
 
 /// Request of the operator, as JSON in a trace and from the page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub enum TestOrder {
     /// This robot kicks until so many kicks are measured; a running test is replaced.
@@ -43,6 +47,17 @@ pub enum TestOrder {
         robot: u8,
         /// Kicks to measure, 5 to 15.
         kicks: u8,
+    },
+    /// This robot is driven by hand; the order holds for [`HAND_EXPIRY`], then the robot stands.
+    Drive {
+        /// The robot's number.
+        robot: u8,
+        /// Speeds of the body, ahead and to the left, m/s, and of its turn, rad/s, counter-clockwise.
+        velocity: [f32; 3],
+        /// It takes a ball before it, and carries it.
+        dribbler: bool,
+        /// It kicks a ball at its dribbler straight ahead, with this speed of the ball, m/s.
+        kick: Option<f32>,
     },
     /// All robots stand in open play: another team tests on this field.
     Stand,
@@ -62,6 +77,12 @@ pub enum TestRefused {
     /// A number of kicks that is not measured.
     #[error("{0} kicks: a test measures {KICKS_LEAST} to {KICKS_MOST}")]
     Kicks(u8),
+    /// A speed that is not driven.
+    #[error("too fast by hand: at most {SPEED_MAX_M_S} m/s ahead and aside, and {TURN_MAX_RAD_S} rad/s")]
+    Speed,
+    /// A kick of a speed that no kicker has.
+    #[error("a kick by hand: {KICK_MIN_M_S} to {} m/s", RobotSpec::OURS.kicker.fastest)]
+    KickSpeed,
     /// A strategy in another program gives the orders.
     #[error("a strategy in another program gives the orders: end it first")]
     External,
@@ -73,7 +94,10 @@ impl TestOrder {
         let order =
             serde_json::from_slice(json).map_err(|error| TestRefused::Malformed(error.to_string()))?;
         match order {
-            Self::Kick { robot, .. } if RobotId::new(robot).is_none() => Err(TestRefused::NoSuchRobot(robot)),
+            Self::Kick { robot, .. } | Self::Drive { robot, .. } if RobotId::new(robot).is_none() => {
+                Err(TestRefused::NoSuchRobot(robot))
+            }
+            Self::Drive { velocity, kick, .. } => hand::check(velocity, kick).map(|()| order),
             Self::Kick { kicks, .. } if !(KICKS_LEAST..=KICKS_MOST).contains(&kicks) => {
                 Err(TestRefused::Kicks(kicks))
             }
@@ -128,6 +152,8 @@ pub struct KickReport {
 pub(crate) struct RobotTest {
     /// The robot that kicks and the number of its kicks; none: all stand.
     kicker: Option<(RobotId, u8)>,
+    /// The robot that is driven by hand.
+    hand: Option<Hand>,
     fit: Kicks,
     kicks: Vec<[f32; 2]>,
     /// Kicks that were seen, measured or not.
@@ -141,14 +167,15 @@ pub(crate) struct RobotTest {
 
 impl RobotTest {
     /// The test that is ordered; none: an end.
-    pub(crate) fn of(order: TestOrder) -> Option<Self> {
+    pub(crate) fn of(order: TestOrder, now: Instant) -> Option<Self> {
         let kicker = match order {
             TestOrder::Kick { robot, kicks } => Some((RobotId::new(robot)?, kicks)),
-            TestOrder::Stand => None,
+            TestOrder::Drive { .. } | TestOrder::Stand => None,
             TestOrder::End => return None,
         };
+        let hand = Hand::of(order, now);
         let (fit, kicks, state) = (Kicks::default(), Vec::new(), TestState::WaitsForGame);
-        Some(Self { kicker, fit, kicks, tried: 0, rolls: false, target: None, state })
+        Some(Self { kicker, hand, fit, kicks, tried: 0, rolls: false, target: None, state })
     }
 
     /// Findings so far; none: all stand.
@@ -158,17 +185,34 @@ impl RobotTest {
         Some(KickReport { robot, wanted, kicks, gain, state: self.state })
     }
 
-    /// The orders to be sent now in place of the coach's, `usual`.
-    pub(crate) fn plan(&mut self, view: &View, usual: Orders) -> Orders {
-        let task = self.kick(view);
+    /// The robot that is driven by hand.
+    pub(crate) fn driven(&self) -> Option<RobotId> {
+        self.hand.as_ref().map(|hand| hand.robot)
+    }
+
+    /// When the order of a hand ends, while it has not.
+    pub(crate) fn until(&self) -> Option<Instant> {
+        self.hand.as_ref()?.until()
+    }
+
+    /// Ends the order of a hand that is too old; true where it has ended now.
+    pub(crate) fn expire(&mut self, now: Instant) -> bool {
+        self.hand.as_mut().is_some_and(|hand| hand.expire(now))
+    }
+
+    /// The orders to be sent now in place of those `by_coach`.
+    pub(crate) fn plan(&mut self, view: &View, by_coach: Orders) -> Orders {
+        let (alone, task, why) = match &self.hand {
+            Some(hand) => (Some(hand.robot), hand.task(view), OrderReason::ByHand),
+            None => (self.kicker.map(|(robot, _)| robot), self.kick(view), OrderReason::Test),
+        };
         if view.phase != Phase::Run {
-            return usual;
+            return by_coach;
         }
         let orders = view.ours.iter().map(|robot| {
             let role = if robot.id == view.keeper { Role::Keeper } else { Role::Player };
-            let own = task.filter(|_| self.kicker.is_some_and(|(kicker, _)| kicker == robot.id));
-            let task = own.unwrap_or(Task::Stand);
-            Order { robot: robot.id, role, task, why: OrderReason::Test }
+            let task = task.filter(|_| alone == Some(robot.id)).unwrap_or(Task::Stand);
+            Order { robot: robot.id, role, task, why }
         });
         orders.collect()
     }

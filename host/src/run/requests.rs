@@ -1,4 +1,5 @@
-//! `requests`: what an operator asks for while robots play: HALT, parameters, tests of kickers.
+//! `requests`: what an operator asks for while robots play: HALT, parameters, tests of kickers, drives by
+//! hand.
 
 use super::Request;
 use super::event_loop::EventLoop;
@@ -15,14 +16,14 @@ impl EventLoop<'_> {
             let done = match request {
                 Request::Halt => {
                     self.feed(now, Input::Halt);
-                    Ok("HALT was asked for on the page: the robots stand until the end".to_owned())
+                    Ok(Some("HALT was asked for on the page: the robots stand until the end".to_owned()))
                 }
-                Request::Change(change) => self.change(change),
+                Request::Change(change) => self.change(change).map(Some),
                 Request::Test(order) => self.test(order),
-                Request::Save => self.tuning.save(),
+                Request::Save => self.tuning.save().map(Some),
             };
             match done {
-                Ok(line) => self.lines.push(line),
+                Ok(line) => self.lines.extend(line),
                 Err(reason) => self.operator.refuse(reason),
             }
         }
@@ -43,13 +44,15 @@ impl EventLoop<'_> {
         Ok(line)
     }
 
-    /// Starts or ends the test of a kicker; a line that says so, or why not.
-    fn test(&mut self, order: TestOrder) -> Result<String, String> {
-        let now = self.now();
+    /// Starts or ends a test or a drive; a line that says so, none for each further order of a hand, or why
+    /// not.
+    fn test(&mut self, order: TestOrder) -> Result<Option<String>, String> {
+        let (now, driven) = (self.now(), self.host.driven());
         if let InputVerdict::NoTest(refused) = self.feed(now, Input::Test(order.to_json().as_bytes())) {
             return Err(refused.to_string());
         }
-        Ok(format!("test       {}", test_text(order)))
+        let goes_on = driven.is_some() && driven == self.host.driven();
+        Ok((!goes_on).then(|| format!("test       {}", test_text(order))))
     }
 }
 
@@ -66,7 +69,8 @@ pub fn change_text(change: &ParameterChange) -> String {
 pub fn test_text(order: TestOrder) -> String {
     match order {
         TestOrder::Kick { robot, kicks } => format!("the kicker of robot {robot} is tested, {kicks} kicks"),
-        TestOrder::Stand => "all robots stand while the other team tests a kicker".to_owned(),
-        TestOrder::End => "the test of a kicker has ended".to_owned(),
+        TestOrder::Drive { robot, .. } => format!("robot {robot} is driven by hand"),
+        TestOrder::Stand => "all robots stand while the other team tests a robot".to_owned(),
+        TestOrder::End => "the test of a robot has ended".to_owned(),
     }
 }

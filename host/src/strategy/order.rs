@@ -145,6 +145,8 @@ pub enum OrderReason {
     ExternalSilent,
     /// A robot's kicker is tested.
     Test,
+    /// A robot is driven by hand.
+    ByHand,
     /// The referee allows us fewer robots.
     TooMany {
         /// Number of robots allowed.
@@ -201,6 +203,13 @@ pub enum Task {
         /// The other end of the line.
         to: Point<Attack>,
     },
+    /// Carry the ball to a place, with a heading there.
+    Dribble {
+        /// Place of the robot's centre, m.
+        at: Point<Attack>,
+        /// Heading at the place, attack frame.
+        face: Angle,
+    },
     /// Bring the ball to a place.
     PlaceBall {
         /// Designated position of the ball, m.
@@ -227,6 +236,7 @@ impl Task {
                 Directive::Receive { at: flip.to_wire(at), then: then.map(|then| flip.to_wire(then)) }
             }
             Self::Block { from, to } => Directive::Block { from: flip.to_wire(from), to: flip.to_wire(to) },
+            Self::Dribble { at, face } => Directive::Dribble { pose: flip.pose_to_wire(at, face) },
             Self::PlaceBall { at } => Directive::PlaceBall { at: flip.to_wire(at) },
             Self::Gameplay => Directive::Gameplay { hint: None },
             Self::Case(cast) => Directive::Gameplay { hint: Some(cast.hint()) },
@@ -271,6 +281,7 @@ impl fmt::Display for OrderReason {
             Self::External => f.write_str("ordered by the team's own strategy"),
             Self::ExternalSilent => f.write_str("the team's own strategy does not answer"),
             Self::Test => f.write_str("a kicker is tested"),
+            Self::ByHand => f.write_str("a robot is driven by hand"),
             Self::NoBall => f.write_str("no ball is seen"),
             Self::TooMany { allowed } => write!(f, "the referee lets us have {allowed}"),
         }

@@ -63,7 +63,7 @@ impl Tactics {
         by_score: false,
     };
 
-    /// Open play by thresholds and cases: a reference opponent that stays as it is when the usual tactics
+    /// Open play by thresholds and cases: a reference opponent that stays as it is when the default tactics
     /// change.
     pub const ROUND_1: Self = Self { threats: true, second_level: true, attack: true, ..Self::NONE };
 
@@ -89,12 +89,13 @@ impl Tactics {
         if description.is_empty() { "none".to_owned() } else { description.join(",") }
     }
 
-    /// From `none`, `all`, `usual`, [`ROUND_1`], or names with commas between, such as `threats,pass-ahead`.
+    /// From `none`, `all`, `default` (`usual` until version 0.2), [`ROUND_1`], or names with commas between,
+    /// such as `threats,pass-ahead`.
     pub fn parse(text: &str) -> Result<Self, String> {
         match text {
             "none" => return Ok(Self::NONE),
             "all" => return Ok(Self::ALL),
-            "usual" => return Ok(Self::default()),
+            "default" | "usual" => return Ok(Self::default()),
             ROUND_1 => return Ok(Self::ROUND_1),
             _ => {}
         }
@@ -111,7 +112,7 @@ impl Tactics {
                 "by-score" => &mut tactics.by_score,
                 _ => {
                     return Err(format!(
-                        "`{label}` is no tactic; none, all, usual, {ROUND_1}, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated, by-score"
+                        "`{label}` is no tactic; none, all, default, {ROUND_1}, or some of threats, second-level, pass-ahead, coerce, attack, bridge, rated, by-score"
                     ));
                 }
             };
@@ -138,6 +139,10 @@ mod tests {
     #[test]
     fn tactics_are_named_one_by_one_and_a_wrong_name_is_reported() {
         assert_eq!(Tactics::parse("none"), Ok(Tactics::NONE));
+        assert_eq!(
+            ["default", "usual"].map(Tactics::parse),
+            [Ok(Tactics::default()), Ok(Tactics::default())]
+        );
         let some = Tactics::parse("threats,coerce").unwrap();
         assert_eq!(some, Tactics { threats: true, coerce: true, ..Tactics::NONE });
         for tactics in [Tactics::NONE, some, Tactics::ALL] {

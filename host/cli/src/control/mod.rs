@@ -130,7 +130,8 @@ pub(crate) struct ControlArgs {
     #[command(flatten)]
     page: PageArgs,
     /// Viewers of the page may change parameters while robots play (kick gains, limits of the drives,
-    /// tactics, the ball), and save them to the file of --config; without this they may ask for HALT only.
+    /// tactics, the ball), save them to the file of --config, test kickers and drive a robot by hand; without
+    /// this they may ask for HALT only.
     #[arg(long, conflicts_with = "headless")]
     live_parameters: bool,
     /// End after this number of seconds; else Ctrl-C ends it, and robots are halted first.

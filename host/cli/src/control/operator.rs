@@ -133,12 +133,14 @@ impl Operator for ControlOperator<'_> {
 /// A viewer's request to the host, or why it is none; nothing where it is for a simulation, which was refused
 /// when it was read.
 fn request_of(request: UserRequest) -> Option<Result<Request, String>> {
+    if let Some((_, order)) = test_of(&request) {
+        return Some(Ok(Request::Test(order)));
+    }
     Some(match request {
         UserRequest::Halt {} => Ok(Request::Halt),
         UserRequest::Parameter { key, robot, value, .. } => {
             change_of(&key, robot, value.as_ref()).map(Request::Change)
         }
-        UserRequest::Kicks { robot, kicks, .. } => Ok(Request::Test(test_of(robot, kicks))),
         UserRequest::Save {} => Ok(Request::Save),
         _ => return None,
     })

@@ -63,7 +63,7 @@ pub(super) struct MatchesArgs {
     #[arg(long, value_name = "PATH|HOST:PORT")]
     game_controller: Option<String>,
     /// Opponents, with commas between: reactive, marking, zone (these three by default), idle, ours, round-1
-    /// (ours by thresholds and cases, whatever is usual), or ours with other tactics, such as
+    /// (ours by thresholds and cases, whatever the default), or ours with other tactics, such as
     /// ours-without-second-level, ours-without-cases or ours-with-coerce+pass-ahead.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
     opponents: Vec<MatchTeam>,

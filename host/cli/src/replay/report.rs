@@ -50,7 +50,7 @@ pub(super) struct Report {
     /// The highest ball speed of the tracker, m/s.
     pub(super) ball_speed_max: f32,
     pub(super) score: Score,
-    #[serde(rename = "happenings")]
+    #[serde(rename = "events")]
     pub(super) match_events: Vec<RefereeEvent>,
     pub(super) gaps: Vec<Gap>,
     /// Gaps beyond those that are listed.

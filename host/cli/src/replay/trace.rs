@@ -42,7 +42,7 @@ struct Report<'a> {
     sheet: Sheet,
     #[serde(skip_serializing_if = "Option::is_none")]
     damage: Option<String>,
-    #[serde(rename = "happenings")]
+    #[serde(rename = "events")]
     match_events: &'a [RefereeEvent],
     hosts: Vec<Outcome>,
     same_decisions: bool,

@@ -139,6 +139,7 @@ impl Dashboard {
                 | UserRequest::Loss { .. }
                 | UserRequest::Parameter { .. }
                 | UserRequest::Kicks { .. }
+                | UserRequest::Drive { .. }
                 | UserRequest::Save {} => {
                     self.page.refuse("that can be asked of `onetwo play`; here others command the robots");
                 }

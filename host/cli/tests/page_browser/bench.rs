@@ -125,7 +125,7 @@ fn a_moment_becomes_a_case_by_hand_and_keys_that_the_next_match_plays() {
     assert_eq!(tab.eval("[measured, kept]").unwrap(), serde_json::json!([1, 1]));
     let edge =
         pixel(&mut tab, &format!("{COPY}.ball.at.map((mm, i) => mm + (i ? 0 : {COPY}.ball.scope[0]))"));
-    tab.drag(edge, [edge[0] + 15.0, edge[1]]).unwrap();
+    tab.drag(edge, [edge[0] + 13.0, edge[1]]).unwrap();
     tab.wait("onetwo.workbench.past.length === 2").unwrap();
     let dragged = text(&mut tab);
     assert_ne!(dragged, drafted);

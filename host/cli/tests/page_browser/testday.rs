@@ -117,3 +117,49 @@ fn a_skill_is_tried_beside_the_match_and_counted() {
     tab.wait("document.querySelector('#skill-result tbody td').textContent === 'get-ball'").unwrap();
     no_errors(&mut tab);
 }
+
+#[test]
+fn a_robot_driven_by_hand_stands_when_the_page_is_silent_and_in_a_halt() {
+    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let mut browser = Browser::start().unwrap();
+    let mut tab = open(&mut browser, &program, "control");
+    tab.wait("document.querySelectorAll('#hand-robot option').length === 12").unwrap();
+    tab.click("[data-command=FORCE_START]").unwrap();
+    tab.wait("onetwo.store.newest.game.phase === 'run'").unwrap();
+    tab.eval("document.getElementById('hand-robot').value = 'blue 3'").unwrap();
+    let robot = "onetwo.store.newest.robots.find((r) => r.team === 'blue' && r.id === 3)";
+    let moves =
+        format!("Math.hypot(...{robot}.velocity) > 0.35 && {robot}.mind.why === 'a robot is driven by hand'");
+    let stands = "onetwo.store.newest.robots.filter((r) => r.team === 'blue').every((r) => Math.hypot(...r.velocity) < 0.05)";
+    let hold = |tab: &mut Tab<'_>, kind: &str| {
+        tab.eval(&format!(
+            "(() => {{ const pad = document.getElementById('hand-pad'); pad.focus(); pad.dispatchEvent(new KeyboardEvent('{kind}', {{ key: 'w', bubbles: true, cancelable: true }})); }})()"
+        ))
+        .unwrap();
+    };
+    hold(&mut tab, "keydown");
+    tab.wait(&moves).unwrap();
+    tab.wait("/blue 3 is driven/.test(document.getElementById('hand-state').textContent)").unwrap();
+    // Nothing of the hand arrives any more, though the key is held: neither orders nor a stop.
+    tab.eval(
+        "window.real = WebSocket.prototype.send; WebSocket.prototype.send = function (text) { if (!text.includes('drive')) real.call(this, text); }",
+    )
+    .unwrap();
+    tab.wait(stands).unwrap();
+    // It comes back, is halted with the key still held, and goes on after a force start.
+    tab.eval("WebSocket.prototype.send = real").unwrap();
+    tab.wait(&moves).unwrap();
+    tab.click("[data-command=HALT]").unwrap();
+    hold(&mut tab, "keydown");
+    tab.wait(&format!("onetwo.store.newest.game.phase === 'halt' && {stands}")).unwrap();
+    tab.wait("/waits for force start/.test(document.getElementById('hand-state').textContent)").unwrap();
+    tab.click("[data-command=FORCE_START]").unwrap();
+    hold(&mut tab, "keydown");
+    tab.wait(&moves).unwrap();
+    // A release stops it, and the coach takes it back.
+    hold(&mut tab, "keyup");
+    tab.wait(stands).unwrap();
+    tab.click("#hand-end").unwrap();
+    tab.wait(&format!("{robot}.mind.why !== 'a robot is driven by hand'")).unwrap();
+    no_errors(&mut tab);
+}

@@ -37,6 +37,18 @@ fn the_list_is_that_of_the_file_and_a_limit_set_on_the_page_slows_the_robots() {
     written.sort();
     assert_eq!(keys, written.join(","));
 
+    // A search shows what has all its words, those read at the start too; an empty one shows everything.
+    let shown = "[...document.querySelectorAll('#tab-tune .param')].filter((p) => p.checkVisibility()).map((p) => p.dataset.key.split(' ')[0])";
+    let search = |text: &str| {
+        format!(
+            "(() => {{ const s = document.getElementById('tune-search'); s.value = '{text}'; s.dispatchEvent(new Event('input')); }})()"
+        )
+    };
+    tab.eval(&search("multicast REFEREE")).unwrap();
+    tab.wait(&format!("new Set({shown}).size === 1 && {shown}[0] === 'referee'")).unwrap();
+    tab.eval(&search("")).unwrap();
+    tab.wait(&format!("{shown}.includes('calibration.kick')")).unwrap();
+
     // What is refused is told, and what was set stays.
     let set = |key: &str, value: &str| {
         format!(

@@ -187,7 +187,7 @@ impl Draft<'_> {
         let grows = advantage > 0.0;
         let factor = if grows { GROW } else { SHRINK };
         let reason = format!(
-            "{:.0} plays with the ball in the risk ring: {:+.1} points against what is usual there",
+            "{:.0} plays with the ball in the risk ring: {:+.1} points against the average there",
             risk.plays(),
             100.0 * advantage
         );
@@ -265,7 +265,7 @@ impl Draft<'_> {
         // A variant of a weak case has more to gain; a strong one's may still be better.
         let weight = all.plays() * (0.05 - all.advantage()).max(0.01);
         let reason = format!(
-            "{:.0} plays, {:+.1} points against what is usual there",
+            "{:.0} plays, {:+.1} points against the average there",
             all.plays(),
             100.0 * all.advantage()
         );
@@ -292,7 +292,7 @@ impl Draft<'_> {
         let all = self.standing.all;
         if all.advantage() < 0.0 {
             let reason = format!(
-                "{:.0} plays, {:+.1} points against what is usual there",
+                "{:.0} plays, {:+.1} points against the average there",
                 all.plays(),
                 100.0 * all.advantage()
             );
