@@ -125,6 +125,8 @@ impl Drivetrain {
 
     /// Follows the same path, and turns to the same heading, without planning; brakes on a path that is too
     /// old.
+    // Called from three places; a copy in each takes flash.
+    #[inline(never)]
     fn keep_path(&mut self, belief: &Belief, step: f32, path: CurrentPath) -> Wanted {
         self.under_way = Some(path);
         self.path_age = self.path_age.saturating_add(1);
