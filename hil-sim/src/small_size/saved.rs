@@ -9,19 +9,19 @@ impl World {
     pub fn is_consistent(&self) -> bool {
         let count = self.robots.len();
         let known = |index: &u8| usize::from(*index) < count;
-        let slot_of = |(slot, place): (usize, &Option<u8>)| {
-            place.is_none_or(|place| {
-                self.robots.get(usize::from(place)).is_some_and(|robot| robot.who.slot() == slot)
-            })
-        };
         count <= SLOTS
             && self.senses.len() == count
             && self.crashes.len() == SLOTS * SLOTS
             && self.robots.is_sorted_by(|a, b| a.who < b.who)
-            && self.places.iter().enumerate().all(slot_of)
+            && self.places.iter().enumerate().all(|(slot, place)| place.is_none_or(|at| self.is_in(at, slot)))
             && self.places.iter().flatten().count() == count
             && self.near_ball.iter().chain(&self.near_edge).all(known)
             && self.pairs.iter().all(|(a, b)| a != b && known(a) && known(b))
+    }
+
+    /// Whether there is a robot of that number in the list, and its slot is this one.
+    fn is_in(&self, place: u8, slot: usize) -> bool {
+        self.robots.get(usize::from(place)).is_some_and(|robot| robot.who.slot() == slot)
     }
 }
 

@@ -60,7 +60,6 @@ impl Paths<'_> {
                 limits: LIMITS,
                 obstacles: &obstacles,
                 within,
-                straight_on: false,
                 step: STEP_S,
                 effort: EFFORT_MAX,
             };

@@ -125,8 +125,6 @@ impl Drivetrain {
 
     /// Follows the same path, and turns to the same heading, without planning; brakes on a path that is too
     /// old.
-    // Called from three places; a copy in each takes flash.
-    #[inline(never)]
     fn keep_path(&mut self, belief: &Belief, step: f32, path: CurrentPath) -> Wanted {
         self.under_way = Some(path);
         self.path_age = self.path_age.saturating_add(1);
@@ -166,11 +164,10 @@ impl Drivetrain {
             around.leave_out_far();
         }
         // Too little for all that is around: the path of a few steps before has looked at all of it.
-        // A robot that this path leaves where it is has nothing to keep.
-        let on = under_way.and_then(|path| path.towards).filter(|to| to.distance(from) > AT_PLACE);
-        if effort < search_effort(around.obstacles.len()) && path_age < PATH_AGE_MAX && on.is_some() {
+        if effort < search_effort(around.obstacles.len()) && path_age < PATH_AGE_MAX {
             self.path_age = path_age;
-            return self.keep_path(belief, step, CurrentPath { drive: *drive, towards: on });
+            let towards = under_way.and_then(|path| path.towards);
+            return self.keep_path(belief, step, CurrentPath { drive: *drive, towards });
         }
         // Where the effort is too small for all robots the drive only slows down for those far away.
         while effort < search_effort(around.obstacles.len()) && around.leave_out_farthest(from) {}
@@ -184,7 +181,6 @@ impl Drivetrain {
             limits: limits(belief, drive),
             obstacles: &around.obstacles,
             within: Some(around.within),
-            straight_on: belief.game.phase == Phase::Run,
             step,
             effort,
         };
