@@ -110,6 +110,15 @@ pub struct Arrival {
     pub ball: Point<Attack>,
 }
 
+/// The velocity with which a rolling ball would rest where this one will: one that flies or slides is soon
+/// slower than it is now.
+fn as_if_rolling(ball: &ViewBall, ground: &BallModel) -> Vector<Attack> {
+    let rolled = ground.rolling(ball.position, ball.velocity).rest_distance();
+    let share = ball.position.distance(ball.rest) / rolled.max(f32::MIN_POSITIVE);
+    // Rolling with even deceleration the distance is as the square of the speed.
+    if ball.rest == ball.position { ball.velocity } else { ball.velocity * share.min(1.0).sqrt() }
+}
+
 /// The soonest time at which `robot` can be behind the ball to play it towards `goal`, along the whole of the
 /// ball's path on the field; for a ball that no robot plays before it leaves, at the line.
 pub fn arrival(
@@ -120,8 +129,8 @@ pub fn arrival(
     goal: Point<Attack>,
 ) -> Arrival {
     let mover = Mover::new(robot.position, robot.velocity, limits);
-    let path = ground.rolling(ball.position, ball.velocity);
-    let speed = ball.velocity.norm();
+    let path = ground.rolling(ball.position, as_if_rolling(ball, ground));
+    let speed = path.progress(0.0).1;
     let (mut time, mut progress) = (0.0, (0.0, speed));
     while progress.1 > RESTING_SPEED_MAX_M_S {
         let at = ball.position + path.along() * progress.0;

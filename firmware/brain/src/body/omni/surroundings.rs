@@ -11,7 +11,7 @@ use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::{FieldSpec, Phase, RuleRole, Side};
 
 use super::DriveMode;
-use crate::belief::Belief;
+use crate::belief::{Belief, Other};
 
 /// Obstacles around the robot, and the region it must stay in.
 #[derive(Clone, Debug)]
@@ -86,6 +86,12 @@ impl Surroundings {
         // Close to the ball bodies touch: a robot that went around every opponent there would never have it.
         let margin = if mode == DriveMode::Avoiding { ROBOTS } else { ROBOTS_AT_BALL };
         let radius = 2.0 * BODY + margin;
+        // Whoever goes for the ball too will be at it: a path around where that takes it ends beside the ball.
+        let contested = belief.ball.filter(|_| mode == DriveMode::Bold && belief.game.phase == Phase::Run);
+        let goes_for_it = |other: &Other| {
+            other.side == Side::Theirs
+                && contested.is_some_and(|ball| ball.position.distance(other.pose.position) < CONTESTED_WITHIN)
+        };
         // Out of a region all others count; first those that it could reach before it is planned again.
         for is_first in [true, false] {
             if !is_first {
@@ -96,13 +102,14 @@ impl Surroundings {
             }
             for other in &belief.others {
                 let at = other.pose.position;
-                let speed = other.velocity.x().abs() + other.velocity.y().abs();
+                let velocity = if goes_for_it(other) { Vector::default() } else { other.velocity };
+                let speed = velocity.x().abs() + velocity.y().abs();
                 let reach = radius + ASIDE + ASIDE_FOR * speed;
                 let is_close = leaves && at.distance(me) < LEAVES_PAST
                     || path.distance_to(at) < reach
                     || stops.distance_to(at) < reach;
                 if is_close == is_first {
-                    self.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
+                    self.add(Obstacle::robot(at, velocity, radius + STRAYS_FOR * speed));
                 }
             }
         }
@@ -219,6 +226,9 @@ const AVOIDING_PLACING: f32 = 0.055;
 const ROBOTS: f32 = 0.03;
 /// Distance kept from other robots beside the ball, m.
 const ROBOTS_AT_BALL: f32 = 0.0;
+/// Opponents this near the ball are planned for as if they stood by a robot that goes for it, m: what one
+/// drives in 0.5 s from rest, twice.
+const CONTESTED_WITHIN: f32 = 0.9;
 /// A teammate this near the ball of our restart is about to kick it, m: 0.18 m where it lines up, and room
 /// for a swing.
 const KICKS_WITHIN: f32 = 0.35;

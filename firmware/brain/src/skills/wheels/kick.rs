@@ -4,7 +4,7 @@
 //! In a restart the kicker may touch the ball once: it goes in only when everything points right, kicker
 //! armed and dribbler still, so that the first touch is the kick.
 
-use geometry::{Angle, Field, Point, Vector, math};
+use geometry::{Angle, Field, Point, Segment, Vector, math};
 use motion::ball::BallModel;
 use protocol::host::RuleRole;
 use protocol::robot_io::OmniKick;
@@ -34,8 +34,8 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
     let face = ball.position.direction_to(at);
     // Contact first, the turn after, where an opponent comes for a ball that this robot would go round.
-    if !once && ready && takes_first(belief, &ball, face) {
-        let aimed = (face - belief.pose.heading).abs() < AIM_CLEARS;
+    if !once && takes_first(belief, &ball, face) {
+        let aimed = ready && (face - belief.pose.heading).abs() < AIM_CLEARS;
         return Drive { kick: if aimed { kick } else { OmniKick::None }, ..take(belief, &ball) }.into();
     }
     // Where an opponent stands behind the ball there is no room to line up: the ball is taken first, and
@@ -75,7 +75,7 @@ fn takes_first(belief: &Belief, ball: &BelievedBall, face: Angle) -> bool {
     let opponent = belief.nearest_opponent(ball.position).map_or(f32::INFINITY, |(_, distance)| distance);
     let wanted = opponent < HAS_BALL
         || belief.game.rule_role == RuleRole::Keeper
-        || round > GOES_ROUND && is_pressed(belief, ball);
+        || (round > GOES_ROUND || comes(belief, ball)) && is_pressed(belief, ball);
     // Not at the own goal line, nor towards it where that is near: a ball that is pushed there is in, or out.
     let field = belief.league().field();
     let line = field.goal_center(belief.game.defending).x();
@@ -86,25 +86,33 @@ fn takes_first(belief: &Belief, ball: &BelievedBall, face: Angle) -> bool {
     wanted && me.distance(ball.position) < within && !at_line
 }
 
-/// Whether an opponent is close to the ball, or comes for it.
+/// Whether an opponent is close to the ball or to its way to the robot, or comes for it.
 fn is_pressed(belief: &Belief, ball: &BelievedBall) -> bool {
+    let way = Segment::new(ball.position, belief.pose.position);
     belief.others.iter().filter(|other| other.side == Side::Theirs).any(|other| {
         let off = ball.position - other.pose.position;
         let distance = off.norm();
-        distance < CLOSE_WITHIN_M || distance < PRESSED && other.velocity.dot(off) > COMES_AT * distance
+        way.distance_to(other.pose.position) < CLOSE_WITHIN_M || distance < PRESSED && other.velocity.dot(off) > COMES_AT * distance
     })
 }
 
-/// Straight to the ball, and slow at it while the roller does not face it.
+/// Whether the ball rolls towards the robot, which would wait for it on its line.
+fn comes(belief: &Belief, ball: &BelievedBall) -> bool {
+    ball.velocity.dot(belief.pose.position - ball.position) > 0.0 && ball.velocity.norm() > REST_SPEED_MAX
+}
+
+/// Straight to the ball, and slow at it while the roller does not face it; as much slower before one that
+/// comes as that is fast.
 fn take(belief: &Belief, ball: &BelievedBall) -> Drive {
     let me = belief.pose.position;
     let lead = TAKE_LEAD + LEADS_FARTHER * me.distance(ball.position);
     let to_ball = ball.position + ball.velocity * lead - me;
     let face = to_ball.angle();
     let gap = to_ball.norm() - BALL_AT;
-    let to = me + to_ball.unit().unwrap_or_default() * (gap + GOES_THROUGH);
-    let speed =
-        TAKES + ball.velocity.norm() + math::sqrt(2.0 * limits_without_ball(belief).braking * gap.max(0.0));
+    let along = to_ball.unit().unwrap_or_default();
+    let to = me + along * (gap + GOES_THROUGH);
+    let touch = (TAKES + ball.velocity.dot(along)).max(0.0);
+    let speed = touch + math::sqrt(2.0 * limits_without_ball(belief).braking * gap.max(0.0));
     Drive { speed, dribbler: 1.0, ..Drive::bold(to, face) }
 }
 
