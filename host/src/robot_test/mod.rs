@@ -1,4 +1,4 @@
-//! `robot_test`: one robot on the field for itself: its kicker is tested, or it is driven by hand ([`hand`]).
+//! `robot_test`: one robot on the field for itself: its kicker is tested, or it is driven by hand.
 //! In the test it kicks a resting ball again and again, at several speeds; the tracker sees how fast the ball
 //! leaves, and the gain of the kicker is fitted. m, m/s.
 //!
