@@ -71,7 +71,7 @@ fn at(x: f32, y: f32) -> Point<Field> {
     Point::new(x, y)
 }
 
-/// Both teams stand in their halves, yellow in the negative one; nobody drives.
+/// Both teams stand in their halves, yellow in the negative one; no robot drives.
 struct Scene {
     world: World,
     referee: InternalReferee,

@@ -19,7 +19,7 @@ pub const HAND_EXPIRY: Duration = Duration::millis(100);
 pub const SPEED_MAX_M_S: f32 = 2.0;
 /// Fastest turn, rad/s: likewise; robots reach 8.
 pub const TURN_MAX_RAD_S: f32 = 6.0;
-/// Slowest kick, m/s: slower ones are not told from a touch.
+/// Slowest kick, m/s: slower ones look like a touch.
 pub const KICK_MIN_M_S: f32 = 1.0;
 /// From the camera frame to the wheels, s: measured in the simulator, so that 0.2 to 2 m/s are driven within
 /// 2 %.
