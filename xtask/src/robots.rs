@@ -37,4 +37,4 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
 
 /// The image for a robot against native brains for the same: skills alone, and six in a match; and the
 /// robot against its simulation.
-const COMPARED: &str = "test --release --test qemu_wheels --test qemu_match --test robot_spec";
+const COMPARED: &str = "test --release -p match-tests --test qemu_wheels --test qemu_match --test robot_spec";
