@@ -80,6 +80,10 @@ pub struct Course<'o, F> {
     pub obstacles: &'o [Obstacle<F>],
     /// Where its centre must stay, such as the field surface less the robot's radius; any convex shape.
     pub within: Option<Shape<F>>,
+    /// Whether the robot goes straight on as far as it can brake where not even a first corner is found and no
+    /// region is first on the straight path: a robot that comes is not passed by waiting for it. Where many
+    /// leave a region at once they would hold each other up.
+    pub straight_on: bool,
     /// Time until the next plan, s, at most 1.
     pub step: f32,
     /// Most instructions of a Cortex-M4 that the plan may take, by the estimates of its parts;
@@ -185,7 +189,11 @@ pub fn plan<F: Copy>(course: &Course<'_, F>, carried: &mut Carried<F>) -> Detour
     scene.keep_apart(from, goal, false);
     let route = Route::find(&scene, &mut carried.route, (from, velocity), goal, &limits);
     let (verdict, towards) = match route.via {
-        _ if !route.arrives => (RouteVerdict::Blocked { at: route.end }, route.via.unwrap_or(route.end)),
+        _ if !route.arrives => {
+            let straight = course.straight_on && route.via.is_none() && scene.meets_no_region(from, goal);
+            let end = if straight { goal } else { route.end };
+            (RouteVerdict::Blocked { at: route.end }, route.via.unwrap_or(end))
+        }
         None => (RouteVerdict::Direct, goal),
         Some(via) => (RouteVerdict::Around { via }, past(from, via, route.behind, &limits)),
     };

@@ -106,6 +106,7 @@ impl MotionTask {
             limits: FreeLimits::default(),
             obstacles,
             within: Some(Shape::Box { low: Point::new(-4.7, -3.2), high: Point::new(4.7, 3.2) }),
+            straight_on: true,
             step: 0.01,
             effort: STEP_EFFORT,
         };

@@ -60,6 +60,7 @@ impl Paths<'_> {
                 limits: LIMITS,
                 obstacles: &obstacles,
                 within,
+                straight_on: false,
                 step: STEP_S,
                 effort: EFFORT_MAX,
             };

@@ -31,6 +31,7 @@ fn course(from: Point<Field>, to: Point<Field>, obstacles: &[Obstacle<Field>]) -
         limits,
         obstacles,
         within: None,
+        straight_on: false,
         step: STEP,
         effort: EFFORT_MAX,
     }
@@ -398,6 +399,7 @@ fn nothing_that_comes_in_makes_it_fall_over() {
             limits,
             obstacles: &obstacles,
             within,
+            straight_on: round % 7 == 0,
             step,
             effort: EFFORT_MAX,
         });
@@ -405,5 +407,18 @@ fn nothing_that_comes_in_makes_it_fall_over() {
             path.next.velocity.is_finite() && path.next.position.is_finite(),
             "{from:?} {velocity:?} {to:?} {obstacles:?} {within:?}"
         );
+    }
+}
+
+#[test]
+fn without_a_route_a_robot_drives_on_as_far_as_it_can_brake_or_stays_as_asked() {
+    // A wall across the whole surface, 1 m ahead.
+    let wall = Shape::Box { low: at(1.0, -10.0), high: at(1.2, 10.0) };
+    let scene = [Obstacle::standing(wall)];
+    for (straight_on, kept) in [(true, 0.0..0.2), (false, 0.99..1.01)] {
+        let start =
+            Course { within: Some(SURFACE), straight_on, ..course(at(0.0, 0.0), at(2.0, 0.0), &scene) };
+        let distance = -drive(start, 3.0).deepest;
+        assert!(kept.contains(&distance), "straight on {straight_on}: {distance} m from the wall");
     }
 }

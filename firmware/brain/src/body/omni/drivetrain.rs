@@ -125,6 +125,8 @@ impl Drivetrain {
 
     /// Follows the same path, and turns to the same heading, without planning; brakes on a path that is too
     /// old.
+    // Called from three places; a copy in each takes flash.
+    #[inline(never)]
     fn keep_path(&mut self, belief: &Belief, step: f32, path: CurrentPath) -> Wanted {
         self.under_way = Some(path);
         self.path_age = self.path_age.saturating_add(1);
@@ -164,9 +166,12 @@ impl Drivetrain {
             around.leave_out_far();
         }
         // Too little for all that is around: the path of a few steps before has looked at all of it.
-        if effort < search_effort(around.obstacles.len()) && path_age < PATH_AGE_MAX {
+        // In play a robot that this path leaves where it is has nothing to keep.
+        let in_play = belief.game.phase == Phase::Run;
+        let towards = under_way.and_then(|path| path.towards);
+        let leads_on = !in_play || towards.is_some_and(|to| to.distance(from) > AT_PLACE);
+        if effort < search_effort(around.obstacles.len()) && path_age < PATH_AGE_MAX && leads_on {
             self.path_age = path_age;
-            let towards = under_way.and_then(|path| path.towards);
             return self.keep_path(belief, step, CurrentPath { drive: *drive, towards });
         }
         // Where the effort is too small for all robots the drive only slows down for those far away.
@@ -181,6 +186,7 @@ impl Drivetrain {
             limits: limits(belief, drive),
             obstacles: &around.obstacles,
             within: Some(around.within),
+            straight_on: in_play,
             step,
             effort,
         };
