@@ -12,6 +12,7 @@ mod destination;
 mod evaluate;
 mod failure;
 mod firmware;
+mod launch;
 mod library;
 #[cfg(feature = "manuals")]
 mod manuals;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Verb::Evaluate(args) => evaluate::run(&args),
         Verb::Replay(args) => replay::run(&args),
         Verb::Simulate(args) => simulate::run(&args),
+        Verb::Launch(args) => launch::run(&args),
         Verb::Control(args) => control::run(&args),
         Verb::Cases { verb } => cases::run(&verb),
         Verb::Firmware { verb } => firmware::run(&verb),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use foreign::{excerpt, printable_path};
 use robots::{Chosen, Description, Finding, Unreadable, VARIABLE};
-use rules::RobotSpec;
+use rules::{BatterySpec, DribblerSpec, HardwareSpec, HullSpec, KickerSpec, RobotSpec, WheelSpec};
 use thiserror::Error;
 
 use crate::output::note;
@@ -93,6 +93,50 @@ pub(crate) fn ensure_built_for(asked: Option<&str>) -> Result<(), DescriptionErr
         return Ok(());
     }
     Err(DescriptionError::OtherRobot { asked: asked.to_owned(), built_for: RobotSpec::OURS.name, keys })
+}
+
+/// The robot of a description, as the simulator takes it; what only brains, hosts and boards compute with stays
+/// the reference robot's.
+pub(crate) fn simulated(asked: Option<&str>) -> Result<RobotSpec, DescriptionError> {
+    let Some(asked) = asked else { return Ok(RobotSpec::OURS) };
+    let (_, of) = read(asked)?;
+    for finding in of.warnings() {
+        note!("{finding}");
+    }
+    let reference = RobotSpec::REFERENCE;
+    Ok(RobotSpec {
+        hull: HullSpec {
+            radius: of.number("body.radius"),
+            front: of.number("body.front"),
+            opening: of.number("body.opening"),
+        },
+        kicker: KickerSpec { chip_degrees: of.number("kicker.chip_degrees"), ..reference.kicker },
+        dribbler: DribblerSpec { full_rpm: of.number("dribbler.full_rpm") },
+        wheels: WheelSpec {
+            degrees: of.wheel_angles(),
+            distance: of.number("wheels.distance"),
+            free_speed: of.number("wheels.free_speed"),
+            ..reference.wheels
+        },
+        battery: BatterySpec { low: of.number("battery.low"), full: of.number("battery.full") },
+        hardware: HardwareSpec {
+            height: of.number("body.height"),
+            mouth: of.number("body.mouth"),
+            mass: of.number("body.mass"),
+            speed: of.number("hardware.speed"),
+            turn_speed: of.number("hardware.turn_speed"),
+            forward: of.number("hardware.forward"),
+            side: of.number("hardware.side"),
+            brake: of.number("hardware.brake"),
+            turn: of.number("hardware.turn"),
+            rim_acceleration: of.number("hardware.rim_acceleration"),
+            flat: of.number("hardware.flat"),
+            chip: of.number("hardware.chip"),
+            recharge: of.number("hardware.recharge"),
+            pull: of.number("hardware.pull"),
+        },
+        ..reference
+    })
 }
 
 /// Inputs of a build for another robot: the value of the environment variable, and the robot's name. The

@@ -7,6 +7,7 @@ use crate::cases::CasesVerb;
 use crate::control::ControlArgs;
 use crate::evaluate::EvaluateArgs;
 use crate::firmware::FirmwareVerb;
+use crate::launch::LaunchArgs;
 use crate::output::ColorChoice;
 use crate::play::PlayArgs;
 use crate::replay::ReplayArgs;
@@ -43,6 +44,9 @@ pub(crate) enum Verb {
     /// A Small Size field for any team's software: vision out, the league's simulation protocol in, a referee
     /// beside it.
     Simulate(Box<SimulateArgs>),
+    /// Start a simulator, both teams and, if its program is named, the league's game controller, with one
+    /// command.
+    Launch(LaunchArgs),
     /// Check, list, show, retrieve and explain cases.
     Cases {
         #[command(subcommand)]

@@ -77,6 +77,63 @@ fn a_client_sees_its_robot_move_and_is_informed_what_is_wrong() {
 }
 
 #[test]
+fn the_example_in_python_drives_a_robot_by_velocities_alone() {
+    let vision = socket();
+    let to = vision.local_addr().expect("an address").to_string();
+    let simulate = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--referee", "none"];
+    let more = ["--vision", &to, "--ideal", "--cameras", "1", "--duration", "60", "--headless"];
+    let mut simulator = Running::start(&[&simulate[..], &more[..]].concat());
+    let port = (simulator.control_port() + 2).to_string();
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../team/examples/velocities.py");
+    let client = Command::new("python3").args([example, "4", "127.0.0.1", &port]).spawn();
+    let mut client = client.expect("python3 is installed");
+    let turned = (0..3000).any(|_| {
+        let seen = image(&vision).robots_yellow;
+        // Yellow faces −x at first; half a circle later it faces +x.
+        seen.iter()
+            .any(|robot| robot.robot_id == Some(4) && robot.orientation.is_some_and(|of| of.abs() < 0.3))
+    });
+    client.kill().and_then(|()| client.wait()).expect("it ran until now");
+    assert!(turned, "yellow 4 drives a circle");
+}
+
+#[test]
+fn one_command_starts_a_field_with_two_teams_and_ends_them_all() {
+    let port = socket().local_addr().expect("an address").port().min(65_000);
+    let mut all = Running::start(&["launch", "--headless", "--ports", &port.to_string()]);
+    let mut received = [(); 2].map(|()| all.wait_for("| robots are received: 0 1 2 3 4 5").1);
+    received.sort();
+    assert!(received[0].starts_with("blue |") && received[1].starts_with("yellow |"), "{received:?}");
+    all.interrupt();
+    assert!(all.process.wait().expect("it ends").success());
+    UdpSocket::bind(("0.0.0.0", port)).expect("the simulator has ended with it");
+}
+
+#[test]
+fn a_robot_of_a_file_is_simulated_with_its_own_limits() {
+    let vision = socket();
+    let to = vision.local_addr().expect("an address").to_string();
+    let simulate =
+        ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--referee", "none", "--robot", "school"];
+    let more = ["--vision", &to, "--ideal", "--cameras", "1", "--duration", "60", "--headless"];
+    let mut simulator = Running::start(&[&simulate[..], &more[..]].concat());
+    let blue = SocketAddr::from(([127, 0, 0, 1], simulator.control_port() + 1));
+    let client = socket();
+    let (mut last, mut fastest) = (None, 0.0_f64);
+    for _ in 0..150 {
+        client.send_to(&order(3, 6.0), blue).expect("sent");
+        let seen = image(&vision);
+        let Some(robot) = seen.robots_blue.iter().find(|robot| robot.robot_id == Some(3)) else { continue };
+        if let Some((x, at)) = last.filter(|(_, at)| seen.t_capture > *at) {
+            fastest = fastest.max((f64::from(robot.x) - x) / 1000.0 / (seen.t_capture - at));
+        }
+        last = Some((f64::from(robot.x), seen.t_capture));
+    }
+    // hardware.speed of robots/school.toml; the default robot reaches 3.5 m/s.
+    assert!((1.0..1.7).contains(&fastest), "{fastest} m/s");
+}
+
+#[test]
 fn while_a_port_is_taken_nothing_is_sent_and_vision_comes_once_it_is_free() {
     let vision = socket();
     let to = vision.local_addr().expect("an address").to_string();

@@ -19,6 +19,7 @@ mod markdown;
 mod page;
 mod plot;
 mod table;
+mod versions;
 
 use figures::FigureFile;
 use study::evaluation::{CaseUse, Claim, Comparison, JudgementLine, TableRow};
@@ -27,6 +28,7 @@ pub use ablation::Ablation;
 pub use facts::Facts;
 pub use map::{Map, MapError, Mapper, Pass, PassKind, SQUARE_MM};
 pub use markdown::{MarkerError, between_markers};
+pub use versions::Versions;
 
 /// Inputs of a report.
 #[derive(Clone, Copy, Debug)]

@@ -86,6 +86,11 @@ impl WorldModel {
     /// That world in that league, with robots as this build describes them; `None` for leagues without
     /// wheeled robots.
     pub fn of(league: League, choice: &WorldChoice) -> Option<Self> {
+        Self::with_robot(league, choice, &RobotSpec::OURS)
+    }
+
+    /// The same with robots of another description.
+    pub fn with_robot(league: League, choice: &WorldChoice, robot: &RobotSpec) -> Option<Self> {
         let parameters = Parameters::of_file(league)?;
         let mut model = match choice {
             WorldChoice::Nominal => Self::nominal(parameters.clone()),
@@ -94,7 +99,7 @@ impl WorldModel {
             }
             WorldChoice::Random(seed) => Self::random(parameters, *seed),
         };
-        model.parameters = model.parameters.for_robot(&RobotSpec::OURS);
+        model.parameters = model.parameters.for_robot(robot);
         Some(Self { name: choice.to_string(), ..model })
     }
 

@@ -12,6 +12,7 @@ use clap::Args;
 use figures::FigureFile;
 use hil_sim::small_size::worlds::WorldPlan;
 use host::strategy::{Tactics, Team};
+use report::Versions;
 use rules::League;
 use serde_json::json;
 use study::matches::{
@@ -82,7 +83,7 @@ pub(super) struct MatchesArgs {
     #[arg(long, value_name = "DIR")]
     merge: Vec<PathBuf>,
     /// Compare with the same matches that another program, case base or setting played into this directory:
-    /// the difference match by match.
+    /// the difference match by match, printed and as the page compare.html. Strategies may differ too.
     #[arg(long, value_name = "DIR", conflicts_with = "markdown")]
     compare: Option<PathBuf>,
     /// Put the tables between the markers of this Markdown file, and the plots into a directory of its name
@@ -175,14 +176,14 @@ impl MatchesArgs {
     }
 
     /// The matches to compare with, those of `now` by another program.
-    fn before(&self, now: &MatchIdentity) -> Result<Option<Vec<MatchRow>>, Failure> {
+    fn before(&self, now: &MatchIdentity) -> Result<Option<(MatchIdentity, Vec<MatchRow>)>, Failure> {
         let Some(directory) = &self.compare else { return Ok(None) };
         let (identity, rows) = merge(shards::<MatchRow>(directory)?)?;
         check_same_matches(&identity, now).map_err(|differences| EvaluationError::OtherMatches {
             directory: directory.clone(),
             differences,
         })?;
-        Ok(Some(rows))
+        Ok(Some((identity, rows)))
     }
 
     /// Writes `matches.csv`, `matches.json` and the plots, and prints the tables.
@@ -195,8 +196,19 @@ impl MatchesArgs {
     ) -> Result<ExitCode, Failure> {
         let made = Made::new(identity, rows, refusals)?;
         let before = self.before(identity)?;
-        let compared =
-            before.map(|before| comparison_table(&compare_matches(&identity.plan, &before, rows)) + "\n");
+        let mut compared = String::new();
+        if let Some((earlier, before)) = &before {
+            let found = compare_matches(&identity.plan, before, rows);
+            let names = [earlier, identity].map(version);
+            let page = Versions { names: [&names[0], &names[1]], rows: [before, rows], found: &found }.html();
+            let file = directory.join("compare.html");
+            write(&file, FileKind::Html, page.as_bytes())?;
+            compared = format!(
+                "{}\n{}: both, match by match\n\n",
+                comparison_table(&found).markdown(),
+                file.display()
+            );
+        }
         write(&directory.join("matches.csv"), FileKind::Csv, &made.csv)?;
         write(&directory.join("matches.json"), FileKind::Json, &made.json()?)?;
         for figure in made.figures("") {
@@ -209,7 +221,7 @@ impl MatchesArgs {
         let (matches, seed) = (made.matches, made.identity.plan.seed);
         work::print_text(&format!(
             "{}{}\n{}{matches} matches, seed {seed}, csv hash {}, in {}\n",
-            compared.unwrap_or_default(),
+            compared,
             made.tables(),
             summary(&made.outcomes),
             made.hash,
@@ -217,6 +229,12 @@ impl MatchesArgs {
         ))?;
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// What is compared: the strategy's command, or who else played.
+fn version(identity: &MatchIdentity) -> String {
+    let program = || format!("{}, cases {}", identity.program, identity.case_base);
+    identity.plan.strategy.clone().unwrap_or_else(program)
 }
 
 /// Results of all matches.

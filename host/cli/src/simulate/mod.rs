@@ -12,6 +12,7 @@ use std::process::ExitCode;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::{Args, ValueEnum};
+use hil_sim::ParameterError;
 use hil_sim::small_size::NoiseParameters;
 use hil_sim::small_size::compatibility::Profile;
 use hil_sim::small_size::network::{self, NetworkSettings, RefereeKind};
@@ -25,7 +26,7 @@ use crate::Failure;
 use crate::args::parsers::{
     address, cameras, controller, destination, field_speed, league, machine, referee, seconds,
 };
-use crate::robot_description::ensure_built_for;
+use crate::robot_description;
 use crate::stop::stopped_by_hand;
 use spectator::FieldOperator;
 
@@ -94,8 +95,8 @@ pub(crate) struct SimulateArgs {
     /// Send the output of our own tracker, too: the league's address is 224.5.23.2:10010.
     #[arg(long, value_name = "HOST:PORT", value_parser = destination)]
     tracker: Option<SocketAddr>,
-    /// The robot's description, a file or a built-in name: refused where it is not the one that this program
-    /// is built for (docs/robots.md).
+    /// The description of the robots that are simulated, both teams': a file or a built-in name; by default
+    /// the one that this program is built for (docs/robots.md).
     #[arg(long, value_name = "FILE")]
     robot: Option<String>,
     /// Run without the page.
@@ -133,7 +134,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     if args.referee == RefereeKind::Internal && (args.assistant || args.autoref.is_some()) {
         return Err(SimulateError::InternalReferee.into());
     }
-    ensure_built_for(args.robot.as_deref())?;
+    let robot = robot_description::simulated(args.robot.as_deref())?;
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let profile = match args.profile {
         ProfileLabel::Ours => Profile::Ours,
@@ -143,7 +144,8 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     let settings = ServerSettings::of(args.league, profile, args.seed, unix.as_secs_f64());
     let no_rules = || SimulateError::NotOnWheels(args.league);
     let mut settings = settings.ok_or_else(no_rules)?;
-    settings.model = WorldModel::of(args.league, &args.world).ok_or_else(no_rules)?;
+    settings.model = WorldModel::with_robot(args.league, &args.world, &robot).ok_or_else(no_rules)?;
+    settings.model.check().map_err(SimulateError::Robot)?;
     settings.robots = args.robots.unwrap_or(settings.robots);
     settings.vision_port = args.vision.port();
     if let Some(count) = args.cameras {
@@ -187,6 +189,8 @@ enum SimulateError {
          --referee none, or the ADDRESS:PORT of its packets"
     )]
     InternalReferee,
+    #[error("the robot of --robot does not fit this world: {0}; change its description")]
+    Robot(ParameterError),
     #[error("{} is not played on wheels", .0.name())]
     NotOnWheels(League),
 }

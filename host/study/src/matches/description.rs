@@ -76,7 +76,7 @@ fn worth(effects: &[Effect]) -> Option<Table> {
 }
 
 /// The table of the same matches by two programs, case bases or settings.
-pub fn comparison_table(found: &[MatchComparison]) -> String {
+pub fn comparison_table(found: &[MatchComparison]) -> Table {
     let mut table = Table::of_texts(
         "team | against | matches | goals before | goals now | goals a match, difference | p | smallest effect seen | shots a match, difference | p",
     );
@@ -90,7 +90,7 @@ pub fn comparison_table(found: &[MatchComparison]) -> String {
         let row = row.with(change_and_p(Some(b.goals))).with([smallest]);
         table.push(row.with(change_and_p(Some(b.shots))));
     }
-    table.markdown()
+    table
 }
 
 /// `12 : 3`.

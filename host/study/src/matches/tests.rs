@@ -254,7 +254,7 @@ fn the_same_matches_by_two_programs_are_compared_match_by_match() {
     assert!((all.goals.p.unwrap() - 0.2254).abs() < 1e-4, "{found:?}");
     assert!((all.detectable_goals.unwrap() - 2.802 / 3.0_f64.sqrt()).abs() < 1e-9);
     assert!((all.shots.mean - 2.0 / 3.0).abs() < 1e-9);
-    let text = comparison_table(&found);
+    let text = comparison_table(&found).markdown();
     assert!(
         text.contains("| ours | zone | 3 | 3 : 3 | 5 : 2 | 1.00 (-1.48 to 3.48) | 0.225 | 1.62 |"),
         "{text}"
