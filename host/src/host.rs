@@ -267,7 +267,7 @@ impl Host {
             Ok(radio::RadioReceived::Decision(robot, part)) => {
                 let known = &mut self.robots[robot.index()];
                 if let Some(report) = known.assembler.receive(&part) {
-                    known.decision = Some(report);
+                    known.decision = Some(self.radio.numbers().report(report));
                 }
                 InputVerdict::Robot(robot)
             }

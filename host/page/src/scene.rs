@@ -39,6 +39,9 @@ pub struct Scene {
     /// The same as objects: part, what, evidence, remedy, and since when, s.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<serde_json::Value>,
+    /// Our robots at a glance, an object each (docs/start.md).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub glance: Vec<serde_json::Value>,
     /// Number of events up to now.
     pub happened: u64,
     /// True while a viewer has paused the match.

@@ -128,6 +128,7 @@ impl Fault {
             Self::Team(TeamFault::Command { .. }) => "unknown command",
             Self::Team(TeamFault::Unseen(_)) => "unseen robot",
             Self::Team(TeamFault::Unheard(_)) => "unheard robot",
+            Self::Team(TeamFault::OtherNumber { .. }) => "other number",
             Self::Strategy(StrategyFault::Refused { .. }) => "refused answers",
             Self::Strategy(StrategyFault::Silent { .. }) => "silent strategy",
             Self::Referee(_) => "referee's sources",

@@ -55,6 +55,13 @@ pub enum TeamFault {
     Unseen(RobotId),
     /// A robot that cameras see and radio does not receive.
     Unheard(RobotId),
+    /// The only robot that cameras alone know, and the radio number that alone radio receives.
+    OtherNumber {
+        /// Number on the shell.
+        shell: RobotId,
+        /// Number that it was flashed with.
+        radio: RobotId,
+    },
 }
 
 impl TeamFault {
@@ -68,6 +75,7 @@ impl TeamFault {
             Self::Command { number } => format!("command {number}"),
             Self::Unseen(robot) => format!("unseen {robot}"),
             Self::Unheard(robot) => format!("unheard {robot}"),
+            Self::OtherNumber { shell, radio } => format!("number {shell} {radio}"),
         }
     }
 
@@ -82,7 +90,7 @@ impl TeamFault {
     /// The label that heads its line.
     pub(super) const fn heading(&self) -> &'static str {
         match self {
-            Self::Unseen(_) | Self::Unheard(_) => "robots",
+            Self::Unseen(_) | Self::Unheard(_) | Self::OtherNumber { .. } => "robots",
             _ => "referee",
         }
     }
@@ -136,6 +144,11 @@ impl fmt::Display for TeamFault {
                 f,
                 "robot {robot} is seen by a camera, and radio does not receive it: it is not led; is it switched on, with our key and \
                  its number?"
+            ),
+            Self::OtherNumber { shell, radio } => write!(
+                f,
+                "cameras see robot {shell}, which radio does not receive, and radio receives number {radio}, which no camera sees, \
+                 perhaps the same robot: set numbers.radio of robot {shell} to {radio} (page, Parameters, or [[numbers]] in team.toml)"
             ),
         }
     }
@@ -214,6 +227,7 @@ impl TeamChecks {
         let visible = host.world().ours(us).filter(|robot| seen_lately(now, robot));
         visible.for_each(|robot| seen[robot.who.id.index()] = true);
         let led = heard.contains(&true);
+        let before = faults.len();
         for robot in RobotId::all() {
             let (heard, seen) = (heard[robot.index()], seen[robot.index()]);
             if lasts(now, &mut self.unseen[robot.index()], sees && heard && !seen) {
@@ -222,6 +236,12 @@ impl TeamChecks {
             if lasts(now, &mut self.unheard[robot.index()], led && seen && !heard) {
                 faults.push(TeamFault::Unheard(robot));
             }
+        }
+        if let [TeamFault::Unseen(heard), TeamFault::Unheard(shell)]
+        | [TeamFault::Unheard(shell), TeamFault::Unseen(heard)] = faults[before..]
+        {
+            faults.truncate(before);
+            faults.push(TeamFault::OtherNumber { shell, radio: host.radio().numbers().radio(heard) });
         }
     }
 }

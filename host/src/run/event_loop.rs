@@ -68,7 +68,7 @@ pub(super) fn run(
         limits: config.limits,
         tactics: config.tactics,
         learns: settings.learns,
-        radio: RadioSettings { key, relay: link.relay(), ..by_default.radio },
+        radio: RadioSettings { key, relay: link.relay(), numbers: config.numbers, ..by_default.radio },
         external: config.strategy.is_some(),
         cases: settings.cases,
         ..by_default

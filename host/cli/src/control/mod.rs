@@ -134,6 +134,10 @@ pub(crate) struct ControlArgs {
     /// this they may ask for HALT only.
     #[arg(long, conflicts_with = "headless")]
     live_parameters: bool,
+    /// Print our robots at a glance every so many seconds: cameras, radio, battery, faults, and what is not as
+    /// it should be.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    glance: Option<f64>,
     /// End after this number of seconds; else Ctrl-C ends it, and robots are halted first.
     #[arg(short, long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
@@ -193,7 +197,7 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         },
         duration: args.duration,
     };
-    let mut operator = ControlOperator::new(&config, args.config.clone(), page_settings);
+    let mut operator = ControlOperator::new(&config, args.config.clone(), page_settings).glancing(args.glance);
     host::run::run(&settings, &mut operator, stopped_by_hand())?;
     Ok(ExitCode::SUCCESS)
 }
@@ -258,6 +262,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         game_controller: args.game_controller,
         strategy: args.strategy.clone(),
         calibration: args.kicks.clone(),
+        numbers: Vec::new(),
         ball: BallSettings::default(),
         limits: DriveSettings::default(),
         tactics: None,

@@ -34,6 +34,8 @@ pub(super) struct ControlOperator<'a> {
     page_settings: Option<PageSettings<'a>>,
     terminal: Option<Terminal>,
     dashboard: Option<Dashboard>,
+    /// Time between two tables of the robots, and when the next is due.
+    glance: Option<(protocol::Duration, protocol::Instant)>,
 }
 
 impl<'a> ControlOperator<'a> {
@@ -42,7 +44,13 @@ impl<'a> ControlOperator<'a> {
         file: Option<PathBuf>,
         page_settings: Option<PageSettings<'a>>,
     ) -> Self {
-        Self { config, file, page_settings, terminal: None, dashboard: None }
+        Self { config, file, page_settings, terminal: None, dashboard: None, glance: None }
+    }
+
+    /// The robots at a glance are printed every so many seconds.
+    pub(super) fn glancing(self, every_s: Option<f64>) -> Self {
+        let every = every_s.map(|seconds| protocol::Duration((seconds * 1e6) as u64));
+        Self { glance: every.map(|every| (every, protocol::Instant(0) + every)), ..self }
     }
 
     fn on_page(&mut self, act: impl FnOnce(&mut Dashboard)) {
@@ -99,6 +107,10 @@ impl Operator for ControlOperator<'_> {
     }
 
     fn look(&mut self, now: protocol::Instant, host: &Host, findings: &[Finding]) {
+        if let Some((every, due)) = self.glance.filter(|(_, due)| *due <= now) {
+            self.glance = Some((every, due + every));
+            self.line(host::glance::table(&host::glance::robots(host, now)));
+        }
         if let Some(dashboard) = &mut self.dashboard {
             dashboard.look(now, host, findings);
             let name = self.file.as_deref().map(printable_path);
