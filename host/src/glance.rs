@@ -8,6 +8,7 @@ use protocol::{Duration, Instant, RobotId, Who};
 use serde::Serialize;
 
 use crate::Host;
+use crate::health_checks::other_image;
 use crate::radio::Quality;
 
 /// A camera is listed for this time after it has seen the robot last; the last one stays.
@@ -30,6 +31,11 @@ pub struct RobotGlance {
     pub battery: Option<f32>,
     /// What its telemetry reports as wrong, each in two words.
     pub faults: Vec<&'static str>,
+    /// Version of its firmware, and hashes of its image's sources, its `robot.toml` and its case base, as it
+    /// reports them; `None`: not reported.
+    pub version: Option<String>,
+    /// Hash of its case base by its newest beacon, hexadecimal.
+    pub case_base: Option<String>,
     /// What it should have and has not, each in a sentence with its remedy.
     pub wrong: Vec<String>,
 }
@@ -50,6 +56,14 @@ fn robot(host: &Host, shell: RobotId, now: Instant) -> Option<RobotGlance> {
     if cameras.is_empty() && quality.is_none() && numbers.given(shell).is_none() {
         return None;
     }
+    let version = quality.and_then(Quality::version);
+    let expected = host.settings().expected.filter(|_| quality.is_some() && version.is_none());
+    let silent = expected.map(|expected| {
+        format!(
+            "It reports no version ({expected} is expected): just started, with a journal, or an image of before 0.2; \
+             flash it with `onetwo firmware flash --board BOARD`."
+        )
+    });
     Some(RobotGlance {
         team: us.label(),
         shell: shell.number(),
@@ -58,7 +72,9 @@ fn robot(host: &Host, shell: RobotId, now: Instant) -> Option<RobotGlance> {
         heard_ms: quality.and_then(|quality| quality.silence(now)).map(|silence| silence.0 / 1_000),
         battery: quality.and_then(Quality::battery),
         faults: quality.map(|quality| faults(quality, now)).unwrap_or_default(),
-        wrong: Vec::new(),
+        version: version.map(|report| report.to_string()),
+        case_base: host.beacon(shell).map(|beacon| format!("{:08x}", beacon.case_base)),
+        wrong: other_image(host, shell).into_iter().map(|fault| fault.to_string()).chain(silent).collect(),
     })
 }
 
@@ -77,7 +93,7 @@ pub fn faults(quality: &Quality, now: Instant) -> Vec<&'static str> {
 
 /// The robots as a table, one line each, for a terminal.
 pub fn table(robots: &[RobotGlance]) -> String {
-    let mut text = String::from("shell radio  seen by camera (ms ago)    heard ms  battery V  faults");
+    let mut text = String::from("shell radio  seen by camera (ms ago)    heard ms  battery V  cases     version; faults");
     for robot in robots {
         let cameras: Vec<String> = robot.cameras.iter().map(|(id, ms)| format!("{id} ({ms})")).collect();
         let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
@@ -86,12 +102,14 @@ pub fn table(robots: &[RobotGlance]) -> String {
         };
         let _ = write!(
             text,
-            "\n{:>5} {:>5}  {:<26}{:>8}  {:>9}  {}",
+            "\n{:>5} {:>5}  {:<26}{:>8}  {:>9}  {:<8}  {}; {}",
             robot.shell,
             robot.radio,
             some(&cameras, "-"),
             or_dash(robot.heard_ms.map(|ms| ms.to_string())),
             or_dash(robot.battery.map(|volts| format!("{volts:.1}"))),
+            or_dash(robot.case_base.clone()),
+            or_dash(robot.version.clone()),
             if robot.faults.is_empty() { "none".to_owned() } else { robot.faults.join(", ") }
         );
         robot.wrong.iter().for_each(|sentence| _ = write!(text, "\n             {sentence}"));

@@ -31,6 +31,7 @@ use protocol::host::{DriveLimits, HostCommand, HostMessage, PARTS_MAX, Telemetry
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
 use protocol::team::{Beacon, TeamMessage};
+use protocol::version::VersionReport;
 use protocol::{Duration, Instant, RobotId, TeamId};
 
 use crate::world::World;
@@ -126,6 +127,8 @@ pub enum RadioReceived {
     Handshake(RobotId),
     /// Part of the problem that a robot decided on, to the host.
     Decision(RobotId, DecisionPart),
+    /// What a robot runs, to the host.
+    Version(RobotId, VersionReport),
 }
 
 /// The host's radio: queue of frames, links to robots, refusals.
@@ -243,6 +246,12 @@ impl Radio {
         }
         let (robot, message) = match opened? {
             Opened::Believed(robot, message) => (robot, message),
+            Opened::Version(robot, report) => {
+                let (frame, quality) = (frame?, &mut self.robots[robot.index()]);
+                quality.receive(now, packet.len(), frame.epoch, frame.counter);
+                quality.report_version(report);
+                return Ok(RadioReceived::Version(self.settings.numbers.shell(robot), report));
+            }
             Opened::Unauthenticated(robot, telemetry) => {
                 self.refusals.report(now, robot, &telemetry);
                 if self.robots[robot.index()].wants_welcome(now, UNAUTHENTICATED_EVERY) {

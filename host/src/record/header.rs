@@ -258,6 +258,7 @@ impl HostHeader {
             limits: self.limits()?,
             external: self.external,
             cases,
+            expected: None,
         })
     }
 

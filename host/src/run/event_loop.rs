@@ -12,7 +12,8 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use protocol::frame::TeamKey;
-use rules::{Colour, Phase};
+use protocol::version::{VersionReport, hash_of, parse_hash, parts_of};
+use rules::{Colour, Phase, RobotSpec};
 use ssl::Message;
 use ssl::log::MessageKind;
 use ssl::net::{Interfaces, NetSender};
@@ -23,7 +24,7 @@ use super::radio_alarms::RadioAlarms;
 use super::tuning::{Tuning, keep_learned};
 use super::watch::Watch;
 use super::{Operator, Program, RunError, RunSettings, identity, port_for_teams, threads};
-use crate::config::TeamConfig;
+use crate::config::{RobotLink, TeamConfig};
 use crate::radio::RadioSettings;
 use crate::record::header::RecordingHeader;
 use crate::record::{BackgroundRecorder, Recorder};
@@ -73,6 +74,14 @@ pub(super) fn run(
         cases: settings.cases,
         ..by_default
     };
+    // Robots in a simulator are processes of this program.
+    let expected = (!matches!(config.robots, RobotLink::Simulator(_))).then(|| VersionReport {
+        version: parts_of(settings.program.version),
+        image: parse_hash(settings.program.image),
+        robot: hash_of(RobotSpec::TEXT.as_bytes()),
+        case_base: host_settings.case_base().hash(),
+    });
+    let host_settings = HostSettings { expected, ..host_settings };
     let strategy =
         config.strategy.as_deref().map(|command| StrategyProcess::start(command, STRATEGY_PATIENCE));
     let strategy = strategy.transpose().map_err(RunError::Strategy)?;

@@ -64,6 +64,8 @@ pub struct Program<'a> {
     pub version: &'a str,
     /// The commit that it was built from.
     pub commit: &'a str,
+    /// Hash of the sources of the robots' images, hexadecimal; `None`: unknown.
+    pub image: Option<&'a str>,
 }
 
 /// Robots that this program starts in a simulator, each as a process of the program's own file.

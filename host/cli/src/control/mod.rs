@@ -186,7 +186,7 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     });
     let settings = RunSettings {
         config: &config,
-        program: Program { version: env!("CARGO_PKG_VERSION"), commit: env!("ONETWO_COMMIT") },
+        program: Program { version: env!("CARGO_PKG_VERSION"), commit: env!("ONETWO_COMMIT"), image: option_env!("ONETWO_IMAGE_SOURCES") },
         learns: !args.no_learning,
         cases: cases.library_handle.as_ref().map(LibraryHandle::lasting_base),
         virtual_robots: VirtualRobots { ids: robots, arguments: cases.robot_arguments },
