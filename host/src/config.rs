@@ -441,7 +441,9 @@ mod tests {
         assert!(refused("referee_silence = 'wait'").to_string().contains("halt (after 2 s) or go-on"));
         assert!(refused("league = \"four-legged\"").to_string().contains("division-b"));
         assert!(refused("[[calibration]]\nrobot = 1\nkick = 9.0").to_string().contains("calibration.kick"));
-        assert!(refused("[[numbers]]\nrobot = 1\nradio = 16").to_string().contains("numbers.radio: 16 is no"));
+        assert!(
+            refused("[[numbers]]\nrobot = 1\nradio = 16").to_string().contains("numbers.radio: 16 is no")
+        );
         let twice = "[[numbers]]\nrobot = 1\nradio = 3\n[[numbers]]\nrobot = 2\nradio = 3";
         assert!(refused(twice).to_string().contains("robots 1 and 2 are given the same"));
         assert!(refused("[ball]\nroll = 9.0").to_string().contains("ball.roll"));

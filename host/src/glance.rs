@@ -93,7 +93,9 @@ pub fn faults(quality: &Quality, now: Instant) -> Vec<&'static str> {
 
 /// The robots as a table, one line each, for a terminal.
 pub fn table(robots: &[RobotGlance]) -> String {
-    let mut text = String::from("shell radio  seen by camera (ms ago)    heard ms  battery V  cases     version; faults");
+    let mut text = String::from(
+        "shell radio  seen by camera (ms ago)    heard ms  battery V  cases     version; faults",
+    );
     for robot in robots {
         let cameras: Vec<String> = robot.cameras.iter().map(|(id, ms)| format!("{id} ({ms})")).collect();
         let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());

@@ -38,7 +38,8 @@ impl VersionReport {
     /// From a payload; `None` where it is no such report.
     pub fn read(payload: &[u8]) -> Option<Self> {
         let (head, rest) = payload.split_first_chunk::<4>()?;
-        let (&[KIND, major, minor, patch], [image, robot, case_base]) = (head, rest.as_chunks::<4>().0) else {
+        let (&[KIND, major, minor, patch], [image, robot, case_base]) = (head, rest.as_chunks::<4>().0)
+        else {
             return None;
         };
         (payload.len() == PAYLOAD_LEN).then(|| Self {
@@ -66,7 +67,10 @@ impl fmt::Display for VersionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [major, minor, patch] = self.version;
         let Self { image, robot, case_base, .. } = self;
-        write!(f, "{major}.{minor}.{patch} (image {image:08x}, robot.toml {robot:08x}, cases {case_base:08x})")
+        write!(
+            f,
+            "{major}.{minor}.{patch} (image {image:08x}, robot.toml {robot:08x}, cases {case_base:08x})"
+        )
     }
 }
 

@@ -101,7 +101,9 @@ impl TeamFault {
     /// The label that heads its line.
     pub(super) const fn heading(&self) -> &'static str {
         match self {
-            Self::Unseen(_) | Self::Unheard(_) | Self::OtherNumber { .. } | Self::OtherImage { .. } => "robots",
+            Self::Unseen(_) | Self::Unheard(_) | Self::OtherNumber { .. } | Self::OtherImage { .. } => {
+                "robots"
+            }
             _ => "referee",
         }
     }

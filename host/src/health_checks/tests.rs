@@ -241,7 +241,8 @@ fn a_robot_with_another_number_than_its_shell_is_found_and_a_parameter_joins_the
         let mut last = Vec::new();
         for ms in ms.step_by(20) {
             let now = Instant(ms * 1_000);
-            let seen = ssl::vision::DetectionRobot { robot_id: Some(4), confidence: 1.0, ..Default::default() };
+            let seen =
+                ssl::vision::DetectionRobot { robot_id: Some(4), confidence: 1.0, ..Default::default() };
             let frame = ssl::vision::DetectionFrame {
                 t_capture: ms as f64 * 1e-3,
                 frame_number: ms as u32,
@@ -285,7 +286,11 @@ fn a_robot_with_another_image_is_named_with_the_remedy_and_one_as_expected_is_no
         assert!(matches!(refused, crate::InputVerdict::Refused(_)), "{refused:?}");
         host.handle(Instant(1), Input::Robot(&telemetry(&mut robot, EPOCH, 0)));
         let silent = crate::glance::robots(&host, Instant(2)).remove(0).wrong;
-        assert_eq!(silent.iter().any(|text| text.contains("reports no version")), expected.is_some(), "{silent:?}");
+        assert_eq!(
+            silent.iter().any(|text| text.contains("reports no version")),
+            expected.is_some(),
+            "{silent:?}"
+        );
         host.handle(Instant(2), Input::Robot(&robot.seal_version(&runs(1))));
         let faults = HealthChecks::default().look(Instant(3), &host);
         let named = faults.iter().map(ToString::to_string).find(|text| text.contains("another image"));

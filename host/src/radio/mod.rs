@@ -291,9 +291,8 @@ impl Radio {
 
     /// Robots whose telemetry has named our epoch within [`PRESENT`], lowest number first.
     pub fn present(&self, now: Instant) -> impl Iterator<Item = RobotId> {
-        RobotId::all().filter(move |shell| {
-            self.robots[self.settings.numbers.radio(*shell).index()].is_present(now)
-        })
+        RobotId::all()
+            .filter(move |shell| self.robots[self.settings.numbers.radio(*shell).index()].is_present(now))
     }
 
     /// Radio numbers of the shells.

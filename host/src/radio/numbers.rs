@@ -38,7 +38,8 @@ impl RobotNumbers {
         listed().for_each(|(shell, radio)| numbers.radio[shell.index()] = radio);
         let unlisted = || RobotId::all().filter(|shell| given[shell.index()].is_none());
         let homeless = unlisted().filter(|shell| owner[shell.index()].is_some());
-        let free = RobotId::all().filter(|radio| owner[radio.index()].is_none() && given[radio.index()].is_some());
+        let free =
+            RobotId::all().filter(|radio| owner[radio.index()].is_none() && given[radio.index()].is_some());
         homeless.zip(free).for_each(|(shell, radio)| numbers.radio[shell.index()] = radio);
         Ok(numbers)
     }

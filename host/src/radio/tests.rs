@@ -437,7 +437,9 @@ fn a_robot_flashed_with_another_number_is_led_and_reported_by_its_shell() {
     assert!(matches!(deliver(&mut link, 0, ms(1), &welcome)[..], [HostMessage::Welcome(_)]));
     let telemetry = radio.handle_packet(ms(1), &report(&mut link, ms(1)));
     assert!(matches!(telemetry, Ok(RadioReceived::Telemetry(shell, _)) if shell == id(4)));
-    assert!(radio.present(ms(1)).eq([id(4)]) && radio.quality(id(4)).is_some() && radio.quality(id(0)).is_none());
+    assert!(
+        radio.present(ms(1)).eq([id(4)]) && radio.quality(id(4)).is_some() && radio.quality(id(0)).is_none()
+    );
 
     let pass = HostCommand {
         directive: Directive::Pass {
@@ -463,5 +465,8 @@ fn a_robot_flashed_with_another_number_is_led_and_reported_by_its_shell() {
     });
     let command = command.unwrap();
     assert_eq!(command.to, id(0));
-    assert!(matches!(command.directive, Directive::Pass { receiver, .. } if receiver == id(0)), "{command:?}");
+    assert!(
+        matches!(command.directive, Directive::Pass { receiver, .. } if receiver == id(0)),
+        "{command:?}"
+    );
 }

@@ -5,6 +5,7 @@
 //! which is 0 when the loop starts.
 
 use std::io;
+use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -21,6 +22,7 @@ use ssl::net::{Interfaces, NetSender};
 use super::alarms::Alarms;
 use super::inbox::{Inbox, Mail, Source};
 use super::radio_alarms::RadioAlarms;
+use super::remote_thread::{self, RemoteAnswer};
 use super::tuning::{Tuning, keep_learned};
 use super::watch::Watch;
 use super::{Operator, Program, RunError, RunSettings, identity, port_for_teams, threads};
@@ -28,6 +30,7 @@ use crate::config::{RobotLink, TeamConfig};
 use crate::radio::RadioSettings;
 use crate::record::header::RecordingHeader;
 use crate::record::{BackgroundRecorder, Recorder};
+use crate::referee::remote::RemoteRequest;
 use crate::referee::team_port::TeamPortRequest;
 use crate::shell::{Link, Outbox, StrategyProcess};
 use crate::strategy::Task;
@@ -94,7 +97,7 @@ pub(super) fn run(
     operator.started();
 
     let watch = Watch::new(link.advice());
-    let (channels, threads) = Threads::start(config, link, strategy);
+    let (channels, threads) = Threads::start(config, link, strategy, settings.remote);
     let mut event_loop = EventLoop {
         host: Host::new(host_settings, protocol::Instant(0)),
         began: Instant::now(),
@@ -148,12 +151,14 @@ fn header(settings: &HostSettings, program: Program<'_>) -> RecordingHeader {
 }
 
 /// What connects the loop with its threads.
-struct Channels {
+pub(super) struct Channels {
     mail: Arc<Inbox>,
     /// Frames to the robots.
     out: Arc<Mutex<Outbox>>,
     /// Requests to the game controller.
     ask: Sender<TeamPortRequest>,
+    /// Requests to the game controller as a remote control.
+    pub(super) remote: Sender<RemoteRequest>,
     /// Views for the team's own strategy.
     view: Sender<String>,
 }
@@ -169,6 +174,7 @@ impl Threads {
         config: &TeamConfig,
         link: Box<dyn Link>,
         strategy: Option<StrategyProcess>,
+        remote_port: Option<SocketAddr>,
     ) -> (Channels, Self) {
         let (mail, out) = (Arc::new(Inbox::new()), Arc::new(Mutex::new(Outbox::default())));
         let end = Arc::new(AtomicBool::new(false));
@@ -183,11 +189,15 @@ impl Threads {
             let who = (config.name.clone(), config.colour, config.keeper);
             threads.push(port_for_teams::talk(address, who, asked, mail.clone(), end.clone()));
         }
+        let (remote, asked) = mpsc::channel();
+        if let Some(address) = remote_port {
+            threads.push(remote_thread::talk(address, config.colour, asked, mail.clone(), end.clone()));
+        }
         let (view, views) = mpsc::channel();
         if let Some(strategy) = strategy {
             threads.push(threads::ask_strategy(strategy, views, mail.clone(), end.clone()));
         }
-        (Channels { mail, out, ask, view }, Self { end, threads })
+        (Channels { mail, out, ask, remote, view }, Self { end, threads })
     }
 
     /// Ends all of them.
@@ -210,7 +220,7 @@ struct Counts {
 pub(super) struct EventLoop<'o> {
     pub(super) host: Host,
     began: Instant,
-    channels: Channels,
+    pub(super) channels: Channels,
     us: Colour,
     recorder: Option<BackgroundRecorder>,
     /// Error of a recording that ended before the match.
@@ -308,6 +318,11 @@ impl EventLoop<'_> {
                 self.lines.push(line);
             }
             Mail::Note(line) => self.lines.push(line),
+            Mail::Remote(RemoteAnswer::State(state)) => self.operator.remote(state.as_ref()),
+            Mail::Remote(RemoteAnswer::Refused(reason)) => {
+                self.lines.push(format!("remote control  {reason}"));
+                self.operator.refuse(reason);
+            }
             Mail::Slow(line) => self.alarms.slow(now, line),
         }
     }

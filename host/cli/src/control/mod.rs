@@ -22,7 +22,9 @@ use ssl::net::addresses;
 
 use crate::Failure;
 use crate::args::page::PageArgs;
-use crate::args::parsers::{RobotIds, address, destination, kick, robot_ids, seconds, team_port};
+use crate::args::parsers::{
+    RobotIds, address, destination, kick, remote_port, robot_ids, seconds, team_port,
+};
 use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::destination::{self, FileKind, check_recording};
 use crate::library;
@@ -99,6 +101,10 @@ pub(crate) struct ControlArgs {
     /// announced to the game controller.
     #[arg(long, value_name = "HOST[:PORT]", value_parser = team_port)]
     game_controller: Option<SocketAddr>,
+    /// The game controller's port for remote controls (10011): the page's tab Control then asks for timeouts,
+    /// substitutions, the challenge flag, an emergency stop and the keeper, with --live-parameters.
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = remote_port)]
+    remote: Option<SocketAddr>,
     /// A program that gives the robots' orders, such as `python3 my_team.py`: it gets the view as a line
     /// of JSON and answers with one (docs/strategy-protocol.md). While it does not answer, robots stand.
     #[arg(long, value_name = "COMMAND")]
@@ -186,10 +192,15 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     });
     let settings = RunSettings {
         config: &config,
-        program: Program { version: env!("CARGO_PKG_VERSION"), commit: env!("ONETWO_COMMIT"), image: option_env!("ONETWO_IMAGE_SOURCES") },
+        program: Program {
+            version: env!("CARGO_PKG_VERSION"),
+            commit: env!("ONETWO_COMMIT"),
+            image: option_env!("ONETWO_IMAGE_SOURCES"),
+        },
         learns: !args.no_learning,
         cases: cases.library_handle.as_ref().map(LibraryHandle::lasting_base),
         virtual_robots: VirtualRobots { ids: robots, arguments: cases.robot_arguments },
+        remote: args.remote,
         output: OutputFiles {
             record: args.record.as_deref(),
             learned: args.learned.as_deref(),
@@ -197,7 +208,8 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         },
         duration: args.duration,
     };
-    let mut operator = ControlOperator::new(&config, args.config.clone(), page_settings).glancing(args.glance);
+    let mut operator =
+        ControlOperator::new(&config, args.config.clone(), page_settings).glancing(args.glance);
     host::run::run(&settings, &mut operator, stopped_by_hand())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -11,6 +11,7 @@ use feed::{
 use host::Host;
 use host::config::TeamConfig;
 use host::health_checks::Finding;
+use host::referee::remote::{RemoteRequest, RemoteState};
 use host::run::{Operator, Request};
 use page::{MatchEvent, Page, Powers, UserRequest};
 
@@ -106,6 +107,11 @@ impl Operator for ControlOperator<'_> {
         self.on_page(|dashboard| dashboard.parameters.hasten());
     }
 
+    fn remote(&mut self, state: Option<&RemoteState>) {
+        let state = serde_json::to_value(state).ok();
+        self.on_page(|dashboard| dashboard.remote = state);
+    }
+
     fn look(&mut self, now: protocol::Instant, host: &Host, findings: &[Finding]) {
         if let Some((every, due)) = self.glance.filter(|(_, due)| *due <= now) {
             self.glance = Some((every, due + every));
@@ -154,6 +160,7 @@ fn request_of(request: UserRequest) -> Option<Result<Request, String>> {
             change_of(&key, robot, value.as_ref()).map(Request::Change)
         }
         UserRequest::Save {} => Ok(Request::Save),
+        UserRequest::Remote { request, robot } => RemoteRequest::named(&request, robot).map(Request::Remote),
         _ => return None,
     })
 }
@@ -165,6 +172,8 @@ struct Dashboard {
     ledger: LedgerFeed,
     parameters: ParameterFeed,
     drawn_at: Option<Instant>,
+    /// State by the game controller's port for remote controls; null: no connection.
+    remote: Option<serde_json::Value>,
     /// Time an input takes, as a sliding mean.
     took: Duration,
 }
@@ -184,6 +193,7 @@ impl Dashboard {
             ledger: LedgerFeed::new(library.as_ref()),
             parameters: ParameterFeed::default(),
             drawn_at: None,
+            remote: None,
             took: Duration::ZERO,
         })
     }
@@ -200,6 +210,7 @@ impl Dashboard {
             let mut deferred_scene = self.composer.compose(moment);
             deferred_scene.scene.alarms = findings.iter().map(ToString::to_string).collect();
             deferred_scene.scene.findings = findings.iter().map(Finding::to_json).collect();
+            deferred_scene.scene.remote.clone_from(&self.remote);
             for match_event in self.composer.take_match_events() {
                 self.page.push(match_event);
             }
