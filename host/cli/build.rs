@@ -1,10 +1,14 @@
-//! `build`: build script: the commit that this program is built from, and its date. Answered by git at build
+//! `build`: build script: the commit that this program is built from, its date, and the hash of the sources of
+//! the robots' images. Answered by git at build
 //! time, for `onetwo --version` and for everything that records where it came from; "unknown" where there is
 //! no git or no repository of ours.
 #![forbid(unsafe_code)]
 
 use std::path::Path;
 use std::process::Command;
+
+#[path = "../../firmware/build/src/sources.rs"]
+mod sources;
 
 fn main() {
     let tracked = is_tracked();
@@ -17,6 +21,13 @@ fn main() {
         let answer = if tracked { git(question) } else { None };
         println!("cargo::rustc-env={name}={}", answer.as_deref().unwrap_or("unknown"));
     }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    if let Some(hash) = sources::source_hash(&root) {
+        println!("cargo::rustc-env=ONETWO_IMAGE_SOURCES={hash:08x}");
+    }
+    sources::SOURCES
+        .iter()
+        .for_each(|source| println!("cargo::rerun-if-changed={}", root.join(source).display()));
     rerun_when_head_moves();
 }
 

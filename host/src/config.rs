@@ -23,6 +23,10 @@
 //! kick = 1.06                     # kick gain: measured / ordered ball speed
 //! latency_ms = 45                 # from an order to its motion; displayed, not used
 //!
+//! [[numbers]]                     # a robot whose shell has another number than it was flashed with
+//! robot = 4                       # number on the shell
+//! radio = 0                       # number it was flashed with
+//!
 //! [ball]
 //! roll = 0.41                     # deceleration of a rolling ball, m/s²; left out: vision's
 //!
@@ -44,6 +48,7 @@ use rules::{Colour, League};
 use serde::Deserialize;
 use ssl::net::{addresses, split_address};
 
+use crate::radio::RobotNumbers;
 use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::Tactics;
 
@@ -102,6 +107,9 @@ pub struct TeamSettings {
     /// Deviations of the robots from what is ordered.
     #[serde(default)]
     pub calibration: Vec<Calibration>,
+    /// Robots whose radio number is not the number on their shell.
+    #[serde(default)]
+    pub numbers: Vec<RadioNumber>,
     /// Motion of the ball on this field.
     #[serde(default)]
     pub ball: BallSettings,
@@ -140,6 +148,17 @@ pub struct Calibration {
     /// Latency from an order to its motion, ms: written by `control --learned`, not used yet.
     #[serde(default)]
     pub latency_ms: Option<f32>,
+}
+
+/// A robot's number on its shell, and the one that it was flashed with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RadioNumber {
+    /// Number on the shell, 0–15.
+    pub robot: u8,
+    /// Number that it was flashed with, 0–15; none: as if the entry were left out.
+    #[serde(default)]
+    pub radio: Option<u8>,
 }
 
 fn one() -> f32 {
@@ -182,6 +201,8 @@ pub struct TeamConfig {
     pub strategy: Option<String>,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
+    /// Radio numbers of the shells.
+    pub numbers: RobotNumbers,
     /// Deceleration of a rolling ball, m/s²; none: from vision.
     pub roll: Option<f32>,
     /// Limits of our robots' motion.
@@ -255,6 +276,7 @@ impl TeamSettings {
             game_controller: self.game_controller.or(below.game_controller),
             strategy: self.strategy.or(below.strategy),
             calibration: if self.calibration.is_empty() { below.calibration } else { self.calibration },
+            numbers: if self.numbers.is_empty() { below.numbers } else { self.numbers },
             ball: BallSettings { roll: self.ball.roll.or(below.ball.roll) },
             limits: DriveSettings {
                 speed: self.limits.speed.or(below.limits.speed),
@@ -298,6 +320,7 @@ impl TeamSettings {
             game_controller: self.game_controller,
             strategy: self.strategy,
             kick,
+            numbers: numbers(&self.numbers)?,
             roll,
             limits: self.limits.checked()?,
             tactics: tactics.map_err(|description| error("tactics", description))?,
@@ -328,6 +351,18 @@ fn on_silence(label: &str) -> Result<OnSilence, ConfigError> {
             "referee_silence",
             format!("`{label}` is none; halt (after 2 s) or go-on (by its last command)"),
         )
+    })
+}
+
+fn numbers(entries: &[RadioNumber]) -> Result<RobotNumbers, ConfigError> {
+    let mut given = [None; RobotId::COUNT];
+    for entry in entries {
+        let shell = robot_id("numbers.robot", entry.robot)?;
+        given[shell.index()] = entry.radio.map(|radio| robot_id(parameters::RADIO.key, radio)).transpose()?;
+    }
+    RobotNumbers::new(given).map_err(|[one, other]| {
+        let description = format!("robots {one} and {other} are given the same; give each another");
+        error(parameters::RADIO.key, description)
     })
 }
 
@@ -406,6 +441,11 @@ mod tests {
         assert!(refused("referee_silence = 'wait'").to_string().contains("halt (after 2 s) or go-on"));
         assert!(refused("league = \"four-legged\"").to_string().contains("division-b"));
         assert!(refused("[[calibration]]\nrobot = 1\nkick = 9.0").to_string().contains("calibration.kick"));
+        assert!(
+            refused("[[numbers]]\nrobot = 1\nradio = 16").to_string().contains("numbers.radio: 16 is no")
+        );
+        let twice = "[[numbers]]\nrobot = 1\nradio = 3\n[[numbers]]\nrobot = 2\nradio = 3";
+        assert!(refused(twice).to_string().contains("robots 1 and 2 are given the same"));
         assert!(refused("[ball]\nroll = 9.0").to_string().contains("ball.roll"));
         for link in [
             "",

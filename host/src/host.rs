@@ -263,11 +263,13 @@ impl Host {
                 known.telemetry = Some((now, telemetry));
                 InputVerdict::Robot(robot)
             }
-            Ok(radio::RadioReceived::Handshake(robot)) => InputVerdict::Robot(robot),
+            Ok(radio::RadioReceived::Handshake(robot) | radio::RadioReceived::Version(robot, _)) => {
+                InputVerdict::Robot(robot)
+            }
             Ok(radio::RadioReceived::Decision(robot, part)) => {
                 let known = &mut self.robots[robot.index()];
                 if let Some(report) = known.assembler.receive(&part) {
-                    known.decision = Some(report);
+                    known.decision = Some(self.radio.numbers().report(report));
                 }
                 InputVerdict::Robot(robot)
             }

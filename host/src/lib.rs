@@ -45,6 +45,7 @@
 pub mod config;
 pub mod external;
 pub mod field_geometry;
+pub mod glance;
 pub mod health_checks;
 mod hex;
 mod host;

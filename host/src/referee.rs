@@ -25,6 +25,7 @@
 mod description;
 mod game;
 mod identity;
+pub mod remote;
 mod source;
 mod stamps;
 pub mod team_port;

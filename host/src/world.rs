@@ -109,6 +109,16 @@ impl World {
         self.robots[index(robot.who.colour)][robot.who.id.index()] = Some(robot);
     }
 
+    /// The same with other numbers for the robots of `team`; `number` gives each another one.
+    pub(crate) fn renumbered(&self, team: Colour, number: impl Fn(RobotId) -> RobotId) -> Self {
+        let mut world = self.clone();
+        world.robots[index(team)] = [None; RobotId::COUNT];
+        for robot in self.team(team) {
+            world.put(Robot { who: Who { id: number(robot.who.id), ..robot.who }, ..*robot });
+        }
+        world
+    }
+
     /// The robot, if it is on the field.
     pub fn robot(&self, who: Who) -> Option<&Robot> {
         self.robots[index(who.colour)][who.id.index()].as_ref()

@@ -16,6 +16,7 @@ use crate::host::{HostMessage, Telemetry, Welcome};
 use crate::host_clock::TICK_BITS;
 use crate::link::{Packet, count};
 use crate::team::TeamMessage;
+use crate::version::VersionReport;
 use crate::{Instant, RobotId, TeamId};
 
 /// The host's end of the radio: seals its messages, opens those of robots, counts what it refuses.
@@ -43,6 +44,8 @@ pub struct HostLink {
 pub enum Opened {
     /// A message of a trusted robot.
     Believed(RobotId, TeamMessage),
+    /// What a trusted robot runs.
+    Version(RobotId, VersionReport),
     /// Genuine telemetry of a robot that has not named our epoch: new, led by another host, or recorded. It
     /// may be welcomed.
     Unauthenticated(RobotId, Telemetry),
@@ -166,6 +169,11 @@ impl HostLink {
         self.own.check(frame)?;
         if !frame.is_genuine(packet, self.keys.of(robot), robot) {
             return Err(Refusal::Tag);
+        }
+        let version = VersionReport::read(frame.payload);
+        if let Some(report) = version.filter(|_| self.own.epoch(frame.sender) == Some(frame.epoch)) {
+            self.own.accept(frame);
+            return Ok(Opened::Version(robot, report));
         }
         let telemetry = match decode(frame.payload) {
             Some(TeamMessage::Telemetry(telemetry)) => telemetry,

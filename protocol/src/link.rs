@@ -15,6 +15,7 @@ use crate::host::{HostMessage, PARTS_MAX, Telemetry, WorldPart};
 use crate::host_clock::{Age, HostClock, ticks};
 use crate::peer::PeerTable;
 use crate::team::{Handshake, TEAM_MESSAGE_LEN_MAX, TeamMessage};
+use crate::version::VersionReport;
 use crate::{Duration, Instant, RobotId, TeamId};
 
 /// A radio packet: one whole frame.
@@ -77,6 +78,15 @@ impl Link {
         // A message always fits (tested with the longest there is); if it did not, silence is the safe
         // answer.
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
+        self.seal_payload(payload)
+    }
+
+    /// The packet that reports what this robot runs to its host.
+    pub fn seal_version(&mut self, report: &VersionReport) -> Packet {
+        self.seal_payload(&report.payload())
+    }
+
+    fn seal_payload(&mut self, payload: &[u8]) -> Packet {
         self.counter = self.counter.wrapping_add(1);
         let sender = Sender::Robot(self.me);
         // Telemetry goes to the host alone, and no teammate can send it in the robot's name.

@@ -14,7 +14,7 @@ use crate::decision::DecisionPart;
 use crate::host::Telemetry;
 pub use crate::ids::CASE_ROBOTS_MAX;
 use crate::quantized::{WirePoint, WirePose};
-use crate::{CaseId, CycleId, Duration, RobotId};
+use crate::{CaseId, CycleId, Duration, RobotId, version};
 
 /// A robot is present for this long after its last beacon (docs/architecture.md §5.1): eight beacons of 20
 /// Hz, so that a lost one is no absence. Robots and host hold to it.
@@ -27,7 +27,8 @@ pub const TEAM_MESSAGE_LEN_MAX: usize = 64 - crate::frame::OVERHEAD;
 /// First byte of a robot's payload that is no [`TeamMessage`]: a report of its first start (`bring_up`).
 pub const BRING_UP: u8 = 5;
 
-/// A message of a robot. Odd numbers are for the host; 5 is no variant: it is [`BRING_UP`].
+/// A message of a robot. Odd numbers are for the host; 5 and 7 are no variants: they are [`BRING_UP`] and
+/// [`version::KIND`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TeamMessage {
     /// Whole state of the sender, to all.
@@ -42,9 +43,9 @@ pub enum TeamMessage {
 
 impl TeamMessage {
     /// Returns whether a payload is meant for the host alone, by its first byte: the variant's number, or
-    /// [`BRING_UP`]. 7 is free: with it this is one comparison, as it was with 1 and 3.
+    /// [`BRING_UP`], or [`version::KIND`]: one comparison.
     pub(crate) const fn is_for_host(payload: &[u8]) -> bool {
-        matches!(*payload, [1 | 3 | BRING_UP | 7, ..])
+        matches!(*payload, [1 | 3 | BRING_UP | version::KIND, ..])
     }
 }
 

@@ -15,6 +15,7 @@ use protocol::team::{
     AbortReason, BallQuality, BallReport, Beacon, Bond, Closure, CycleState, Decision, Handshake, KnownEpoch,
     Play, Progress, Role, Status, TeamMessage,
 };
+use protocol::version::VersionReport;
 use protocol::{CaseId, CycleId, Duration, RobotId, TeamId};
 use rules::{Phase, Side};
 
@@ -223,6 +224,13 @@ fn a_report_of_a_first_start_has_the_bytes_of_the_specification() {
 }
 
 #[test]
+fn a_report_of_what_a_robot_runs_has_the_bytes_of_the_specification() {
+    let report = VersionReport { version: [0, 2, 1], image: 0x0102_0304, robot: 5, case_base: u32::MAX };
+    assert_eq!(report.payload(), worked("version")[..], "{}", hex(&report.payload()));
+    assert!(postcard::from_bytes::<TeamMessage>(&report.payload()).is_err(), "no message to a team");
+}
+
+#[test]
 fn the_hosts_messages_have_the_bytes_of_the_specification() {
     for (name, world) in worlds() {
         both_ways(name, &world);
@@ -299,8 +307,8 @@ fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
 #[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Seven of robots, two worlds, a welcome, limits, two keys, three frames and a line.
-    assert_eq!(examples, 7 + worlds().len() + 2 + 2 + 4 + commands().len());
+    // Eight of robots, two worlds, a welcome, limits, two keys, three frames and a line.
+    assert_eq!(examples, 8 + worlds().len() + 2 + 2 + 4 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {

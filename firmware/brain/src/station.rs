@@ -8,6 +8,7 @@ use protocol::frame::{RobotKeys, Sender, TeamKey, claimed_sender, claims_audienc
 use protocol::link::{Link, Packet, Received};
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::TeamMessage;
+use protocol::version::VersionReport;
 use protocol::{Duration, Instant};
 
 use crate::brain::PacketKind;
@@ -118,6 +119,13 @@ impl<'a> Station<'a> {
             self.link.report(now, telemetry);
         }
         Some(self.link.seal(&message))
+    }
+
+    /// The packet that reports what this robot runs; `None` without a host, and in a step with another
+    /// message: sealing costs time.
+    pub fn version_packet(&mut self, now: Instant, report: &VersionReport) -> Option<Packet> {
+        let free = self.link.host_epoch().is_some() && self.last_sent != Some(now);
+        free.then(|| self.link.seal_version(report))
     }
 
     /// The actuator orders, if there are new ones.

@@ -9,8 +9,12 @@ use std::process::{Command, ExitStatus, Stdio};
 
 use crate::inspect::Budget;
 use crate::process::{line_of, output_of};
+use crate::sources::source_hash;
 use crate::target::cargo_program;
 use crate::{Board, TARGET, TargetError, boards, ensure_target_of};
+
+/// Environment variable of an image's build: the hash of its sources, hexadecimal.
+const SOURCE_HASH: &str = "ONETWO_IMAGE";
 
 /// The firmware of a robot with that body for [`MACHINE`](crate::MACHINE), built first where it is missing or
 /// older than its sources.
@@ -91,6 +95,10 @@ fn build_as(
         Some(robot) => build.env(ROBOT, robot),
         None => build.env_remove(ROBOT),
     };
+    // Robots report it, and their host knows it by its own build.
+    if let Some(hash) = source_hash(root) {
+        build.env(SOURCE_HASH, format!("{hash:08x}"));
+    }
     run_cargo(&mut build)?;
     if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
 }

@@ -22,6 +22,7 @@ mod new_board;
 pub mod on_target;
 mod process;
 mod qemu;
+mod sources;
 mod target;
 
 use std::path::{Path, PathBuf};

@@ -40,6 +40,7 @@ pub mod persistent_counter;
 pub mod ports;
 pub mod progress;
 mod recorded;
+mod reporting;
 pub mod sense;
 pub mod setup;
 pub mod tasks;

@@ -12,6 +12,7 @@ use embassy_sync::channel::TryReceiveError;
 use embassy_time::with_deadline;
 use protocol::frame::RobotKeys;
 use protocol::journal::Writer;
+use protocol::version::VersionReport;
 use protocol::{Duration, Instant};
 
 use crate::controller::Controller;
@@ -19,6 +20,7 @@ use crate::mailboxes::{Arrival, Mailboxes};
 use crate::ports::{BodyPort, RadioReceiver, RadioSender, Senses};
 use crate::progress::RobotPart;
 use crate::recorded::Recorded;
+use crate::reporting::{IMAGE, Reporting};
 
 /// The brain's task: starts the boot epoch with its first poll.
 pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) -> ! {
@@ -27,7 +29,7 @@ pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) 
     think(&mut station, boxes).await
 }
 
-/// Runs as [`brain()`] does, with keys of its own.
+/// Runs as [`brain()`] does, with keys of its own; reports to its host what it runs.
 pub async fn brain_with_keys(
     config: &BrainConfig,
     base: CaseBase<'_>,
@@ -36,7 +38,8 @@ pub async fn brain_with_keys(
 ) -> ! {
     // Constructed in place; moving it would store it twice in this future, and on the stack in between.
     let mut station = Station::with_keys(now(), config, base, keys);
-    think(&mut station, boxes).await
+    let report = VersionReport { case_base: base.hash(), ..IMAGE };
+    think(&mut Reporting { station: &mut station, report, last: now() }, boxes).await
 }
 
 /// Runs as [`brain_with_keys`] does, with all inputs and outputs in a journal.

@@ -331,3 +331,34 @@ impl Random {
         (self.0 >> 40) as u32 % n
     }
 }
+
+#[test]
+fn a_reporting_station_tells_its_host_once_a_second_what_it_runs() {
+    use protocol::frame::TeamKey;
+    use protocol::host::HostMessage;
+    use protocol::host_link::{HostLink, Opened};
+    use protocol::version::VersionReport;
+
+    let (id, team) = (RobotId::new(3).unwrap(), TeamId(1));
+    let config = BrainConfig::hosted(id, team, rules::League::DivisionB);
+    let mut station = Station::new(Instant(0), &config, case_library::division_b());
+    let report = VersionReport { image: 7, case_base: 8, ..crate::reporting::IMAGE };
+    let mut robot = crate::reporting::Reporting { station: &mut station, report, last: Instant(0) };
+    let mut host = HostLink::new(team, TeamKey::ZERO, 70);
+    let mut reported = Vec::new();
+    for step in 1..=350_u64 {
+        let now = Instant(step * 10_000);
+        Controller::handle_sensors(&mut robot, now, &sensor_frame(0.1));
+        while let Some(packet) = robot.poll_packet(now) {
+            if let Ok(Opened::Version(from, report)) = host.open(now, &packet) {
+                reported.push((from, report, step / 100));
+            }
+        }
+        if let Some(welcome) = host.welcome(id) {
+            robot.handle_packet(now, &host.seal(now, &HostMessage::Welcome(welcome)));
+        }
+    }
+    assert_eq!(reported, [1, 2, 3].map(|second| (id, report, second)), "nothing before it was welcomed");
+    assert_eq!(report.version, protocol::version::parts_of(env!("CARGO_PKG_VERSION")));
+    assert_ne!(report.robot, 0);
+}

@@ -20,6 +20,7 @@ mod output;
 mod picture;
 mod play;
 mod progress;
+mod remote;
 mod replay;
 mod robot;
 mod robot_description;
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         Verb::Play(args) => play::run(&args),
         Verb::Trial(args) => trial::run(&args),
         Verb::Evaluate(args) => evaluate::run(&args),
+        Verb::Remote(args) => remote::run(&args),
         Verb::Replay(args) => replay::run(&args),
         Verb::Simulate(args) => simulate::run(&args),
         Verb::Launch(args) => launch::run(&args),

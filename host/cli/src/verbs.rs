@@ -10,6 +10,7 @@ use crate::firmware::FirmwareVerb;
 use crate::launch::LaunchArgs;
 use crate::output::ColorChoice;
 use crate::play::PlayArgs;
+use crate::remote::RemoteArgs;
 use crate::replay::ReplayArgs;
 use crate::robot::RobotVerb;
 use crate::simulate::SimulateArgs;
@@ -38,6 +39,9 @@ pub(crate) enum Verb {
     Evaluate(Box<EvaluateArgs>),
     /// The host of a team on the league's network: vision and referee in, commands to robots out.
     Control(Box<ControlArgs>),
+    /// A team's remote control at the game controller: timeout, emergency stop, challenge flag, substitution,
+    /// keeper.
+    Remote(RemoteArgs),
     /// Inspect a recorded match: its contents, the field at a moment, and whether the hosts decide the same
     /// again.
     Replay(Box<ReplayArgs>),

@@ -202,6 +202,7 @@ impl Composer {
             self.rate.of(t, self.images.count),
         );
         gauges.extend(moment.gauges);
+        let glance = moment.hosts.iter().flat_map(|host| host::glance::robots(host, now));
         let scene = Scene {
             t,
             ball: world.ball.map(|ball| self.ball(t, &ball, world)),
@@ -214,6 +215,7 @@ impl Composer {
             gauges,
             alarms,
             findings,
+            glance: glance.filter_map(|robot| serde_json::to_value(robot).ok()).collect(),
             ..scene_of(t, &World::default(), &field)
         };
         let input = OverlayInput {

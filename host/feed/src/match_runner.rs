@@ -331,6 +331,11 @@ impl<'f> MatchRunner<'f> {
             }
             // Handled before: they go through the watchers.
             UserRequest::Parameter { .. } | UserRequest::Kicks { .. } | UserRequest::Drive { .. } => {}
+            UserRequest::Remote { .. } => {
+                refused = Some(
+                    "this match has no game controller's remote control: start control with --remote".into(),
+                );
+            }
             UserRequest::Save {} => {
                 refused = Some("a simulated match has no team's file: copy the text, or download it".into());
             }

@@ -100,20 +100,6 @@ pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant, link: LinkWindow)
     let received = quality.received_at()?;
     let condition = quality.condition();
     let ms = |us: u64| milli(us as f32 * 1e-3);
-    let mut faults = Vec::new();
-    for (bit, fault) in [
-        (Condition::TIPPED, "tipped over"),
-        (Condition::BATTERY_LOW, "battery low"),
-        (Condition::LINK_LOST, "link lost"),
-        (Condition::FLOODED, "radio flooded"),
-    ] {
-        if condition.has(bit) {
-            faults.push(fault.to_owned());
-        }
-    }
-    if !quality.is_present(now) {
-        faults.push("silent".to_owned());
-    }
     let counters = |value: Option<f64>| value.map(|value| milli(value as f32));
     Some(Vitals {
         battery: quality.battery().map(milli),
@@ -128,7 +114,7 @@ pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant, link: LinkWindow)
         refused: quality.refused(),
         lives: quality.lives(),
         unseen_ms: ms(now.since(robot.seen).0),
-        faults,
+        faults: host::glance::faults(quality, now).into_iter().map(str::to_owned).collect(),
         ball: condition.has(Condition::BALL_CONTACT),
         kicker: condition.has(Condition::KICKER_READY),
     })

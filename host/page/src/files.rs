@@ -34,6 +34,7 @@ files! {
     "colours.js": SCRIPT,
     "camera.js": SCRIPT,
     "field.js": SCRIPT,
+    "remote.js": SCRIPT,
     "robots.js": SCRIPT,
     "shapes.js": SCRIPT,
     "heat.js": SCRIPT,

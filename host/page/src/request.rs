@@ -124,6 +124,14 @@ pub enum UserRequest {
         #[serde(default)]
         kick: Option<f32>,
     },
+    /// Our team's remote control asks the game controller for something.
+    Remote {
+        /// Name of the request, as `onetwo remote` takes it.
+        request: String,
+        /// The keeper, for the request of that name.
+        #[serde(default)]
+        robot: Option<u8>,
+    },
     /// The referee's command, by its name in the league: `HALT`, `FORCE_START`, `DIRECT_FREE_BLUE`.
     Referee {
         /// Name of the command.
@@ -190,6 +198,7 @@ impl UserRequest {
                         | Self::Save {}
                         | Self::Kicks { .. }
                         | Self::Drive { .. }
+                        | Self::Remote { .. }
                 )
             }
             Powers::None => false,
@@ -207,6 +216,9 @@ impl UserRequest {
                 (!(SPEED_MIN..=SPEED_MAX).contains(factor)).then_some("speed: 0.05 to 20")
             }
             Self::Situation { name } => (name.len() > NAME_MAX).then_some("a situation: at most 200 bytes"),
+            Self::Remote { request, .. } => {
+                (request.len() > NAME_MAX).then_some("a request: at most 200 bytes")
+            }
             Self::Parameter { key, .. } => (key.len() > NAME_MAX).then_some("a key: at most 200 bytes"),
             Self::Loss { share } => (!(0.0..=1.0).contains(share)).then_some("loss: 0 to 1"),
             Self::Ball { at } | Self::Robot { at, .. } => {

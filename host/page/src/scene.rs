@@ -39,6 +39,12 @@ pub struct Scene {
     /// The same as objects: part, what, evidence, remedy, and since when, s.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<serde_json::Value>,
+    /// Our robots at a glance, an object each (docs/start.md).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub glance: Vec<serde_json::Value>,
+    /// State of our team by the game controller's remote control (docs/case-format.md §5.5).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remote: Option<serde_json::Value>,
     /// Number of events up to now.
     pub happened: u64,
     /// True while a viewer has paused the match.

@@ -3,6 +3,7 @@
 import { byId, el, fill, say } from "./dom.js";
 import { handPart, showHand } from "./hand.js";
 import { ask } from "./link.js";
+import { remotePart, showRemote } from "./remote.js";
 import { showSkills, skillPart } from "./skills.js";
 import { showSnapshots, snapshotPart } from "./snapshots.js";
 import { on, store } from "./store.js";
@@ -22,6 +23,7 @@ export function showControl() {
   const shown = mayAsk === false && powers !== "none" ? "locked" : powers;
   fill(tab, `${shown} ${life}`, () => ({ simulation, halt, tune: halt, none, locked })[shown]());
   showHand();
+  showRemote();
   if (shown !== "simulation") return;
   showSnapshots();
   showSkills();
@@ -41,7 +43,7 @@ const locked = () => el("p", { class: "muted" }, "You are a viewer. To send requ
 const halt = () => [
   el("p", {}, store.state.powers === "tune" ? "On a real field the page can halt our robots, whatever the referee says, until the program ends, change parameters (the tab of that name), and drive one of them by hand." : "On a real field the page can do one thing: our robots stand, whatever the referee says, until the program ends."),
   el("button", { class: "danger", id: "halt", onclick: () => ask({ ask: "halt" }) }, "HALT our robots"),
-  ...(store.state.powers === "tune" ? handPart() : []),
+  ...(store.state.powers === "tune" ? [...remotePart(), ...handPart()] : []),
 ];
 
 function simulation() {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Value;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
 
-use super::parameters::{ACCELERATION, KICK, PARAMETERS, Parameter, SPEED};
+use super::parameters::{ACCELERATION, PARAMETERS, Parameter, SPEED};
 use super::{ConfigError, DriveSettings, TeamConfig, TeamSettings, error};
 use crate::HostSettings;
 
@@ -65,8 +65,8 @@ impl ParameterChange {
         let mut file: DocumentMut =
             text.parse().map_err(|broken: toml_edit::TomlError| error("team.toml", broken.to_string()))?;
         let broken = || error(parameter.key, "the file has something else under this name");
-        if parameter.key == KICK.key {
-            let item = file.entry("calibration").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
+        if let (true, Some(table)) = (parameter.is_each_robots(), parameter.table()) {
+            let item = file.entry(table).or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
             let list = item.as_array_of_tables_mut().ok_or_else(broken)?;
             self.write_robot(parameter, list)?;
         } else if let Some(table) = parameter.table() {
@@ -150,6 +150,7 @@ impl TeamConfig {
     #[must_use]
     pub fn with_live(mut self, settings: &HostSettings) -> Self {
         self.kick = settings.kick;
+        self.numbers = settings.radio.numbers;
         self.roll = settings.roll;
         self.limits = settings.limits;
         self.tactics = settings.tactics;
@@ -159,6 +160,7 @@ impl TeamConfig {
     /// Gives a host's settings this one's values of all that can change while it runs.
     pub(crate) fn apply(&self, settings: &mut HostSettings) {
         settings.kick = self.kick;
+        settings.radio.numbers = self.numbers;
         settings.roll = self.roll;
         settings.limits = self.limits;
         settings.tactics = self.tactics;
@@ -209,6 +211,7 @@ mod tests {
                 r#"{"key":"calibration.kick","robot":3,"value":1.06}"#,
                 "[[calibration]]\nrobot = 3\nkick = 1.06",
             ),
+            (r#"{"key":"numbers.radio","robot":4,"value":0}"#, "[[numbers]]\nrobot = 4\nradio = 0"),
         ] {
             let file = TeamSettings::from_toml(&format!("colour = 'yellow'\n{line}"));
             let changed = usual().changed(&change(json)).unwrap();

@@ -202,7 +202,7 @@ pub(super) const ROLL: Parameter = Parameter {
 pub(crate) const KICK_RANGE: RangeInclusive<f32> = 0.4..=2.0;
 
 /// The gain of a robot's kicker.
-pub(super) const KICK: Parameter = Parameter {
+pub(crate) const KICK: Parameter = Parameter {
     key: "calibration.kick",
     unit: "",
     range: Some(KICK_RANGE),
@@ -211,6 +211,19 @@ pub(super) const KICK: Parameter = Parameter {
     live: true,
     value: Holds::EachRobot(|config, id| {
         Some(config.kick[id.index()]).filter(|factor| *factor != 1.0).map(decimal)
+    }),
+};
+
+/// The radio number of a robot.
+pub(crate) const RADIO: Parameter = Parameter {
+    key: "numbers.radio",
+    unit: "",
+    range: Some(0.0..=15.0),
+    meaning: "number that a robot was flashed with, where its shell has another",
+    left_out: Some(("the shell's", "0")),
+    live: true,
+    value: Holds::EachRobot(|config, id| {
+        config.numbers.given(id).map(|radio| Value::from(i64::from(radio.number())))
     }),
 };
 
@@ -238,7 +251,7 @@ pub(super) const ACCELERATION: Parameter = Parameter {
 };
 
 /// Every parameter, in the order of the file: those of no table first.
-pub const PARAMETERS: [Parameter; 20] = [
+pub const PARAMETERS: [Parameter; 21] = [
     usual("name", "as the game controller knows the team", |c| Some(text_of(&c.name))),
     usual("colour", "blue or yellow", |c| Some(text_of(&c.colour.label()))),
     usual("league", "ssl-2013, division-b or division-a", |c| Some(text_of(&c.league.name()))),
@@ -294,6 +307,7 @@ pub const PARAMETERS: [Parameter; 20] = [
     SPEED,
     ACCELERATION,
     KICK,
+    RADIO,
 ];
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use serde::de::Error as _;
 use serde::{Deserialize as _, Deserializer};
 use ssl::net::{addresses, resolve, resolve_destination};
 
-use super::parameters::{KICK, PARAMETERS};
+use super::parameters::PARAMETERS;
 use super::{RobotLink, TeamConfig};
 
 /// Comment at the head of a written `team.toml`.
@@ -23,7 +23,7 @@ impl TeamConfig {
     pub fn to_toml(&self) -> String {
         let mut text = String::from(HEADING);
         let mut table = None;
-        for parameter in PARAMETERS.iter().filter(|parameter| parameter.key != KICK.key) {
+        for parameter in PARAMETERS.iter().filter(|parameter| !parameter.is_each_robots()) {
             if parameter.table() != table {
                 table = parameter.table();
                 let _ = writeln!(text, "\n[{}]", table.unwrap_or_default());
@@ -35,14 +35,17 @@ impl TeamConfig {
             };
             let _ = writeln!(text, "{line:<40} # {parameter}");
         }
-        let _ = writeln!(text, "\n# {KICK}");
-        let calibrated = KICK.robots(self);
-        if calibrated.is_empty() {
-            let example = KICK.left_out.map_or("", |(_, example)| example);
-            let _ = writeln!(text, "# [[calibration]]\n# robot = 3\n# kick = {example}");
-        }
-        for (id, value) in calibrated {
-            let _ = writeln!(text, "[[calibration]]\nrobot = {id}\nkick = {value}\n");
+        for parameter in PARAMETERS.iter().filter(|parameter| parameter.is_each_robots()) {
+            let _ = writeln!(text, "\n# {parameter}");
+            let (table, name) = (parameter.table().unwrap_or_default(), parameter.name());
+            let robots = parameter.robots(self);
+            if robots.is_empty() {
+                let example = parameter.left_out.map_or("", |(_, example)| example);
+                let _ = writeln!(text, "# [[{table}]]\n# robot = 3\n# {name} = {example}");
+            }
+            for (id, value) in robots {
+                let _ = writeln!(text, "[[{table}]]\nrobot = {id}\n{name} = {value}\n");
+            }
         }
         text
     }
@@ -99,7 +102,8 @@ mod tests {
                    referee = '127.0.0.1:2'\nreferee_source = 'gc'\nreferee_silence = 'go-on'\ntracker = '127.0.0.1:3'\n\
                    game_controller = '127.0.0.1:4'\nstrategy = 'python3 \"x y.py\"'\ntactics = 'threats,rated'\n[ball]\nroll = 0.41\n\
                    [limits]\nspeed = 1.7\nacceleration = 2.3\n\
-                   [[calibration]]\nrobot = 3\nkick = 1.06\n[[calibration]]\nrobot = 15\nkick = 0.9\n";
+                   [[calibration]]\nrobot = 3\nkick = 1.06\n[[calibration]]\nrobot = 15\nkick = 0.9\n\
+                   [[numbers]]\nrobot = 4\nradio = 0\n";
         for text in ["", set, "robots = 'udp://10.0.0.2:10'"] {
             let config = read(text);
             assert_eq!(read(&config.to_toml()), config, "{text}");

@@ -53,6 +53,7 @@ pub use side::{SideEvidence, WrongSide};
 pub use stall::Stall;
 pub use strategy::StrategyFault;
 pub use team::TeamFault;
+pub(crate) use team::other_image;
 pub use vision::CameraFault;
 
 /// Something that does not fit.
@@ -128,6 +129,8 @@ impl Fault {
             Self::Team(TeamFault::Command { .. }) => "unknown command",
             Self::Team(TeamFault::Unseen(_)) => "unseen robot",
             Self::Team(TeamFault::Unheard(_)) => "unheard robot",
+            Self::Team(TeamFault::OtherNumber { .. }) => "other number",
+            Self::Team(TeamFault::OtherImage { .. }) => "other image",
             Self::Strategy(StrategyFault::Refused { .. }) => "refused answers",
             Self::Strategy(StrategyFault::Silent { .. }) => "silent strategy",
             Self::Referee(_) => "referee's sources",

@@ -4,6 +4,7 @@
 use std::fmt;
 
 use geometry::{Field, Point};
+use protocol::version::VersionReport;
 use protocol::{Duration, Instant, RobotId};
 use rules::{Colour, League, Phase};
 
@@ -55,6 +56,22 @@ pub enum TeamFault {
     Unseen(RobotId),
     /// A robot that cameras see and radio does not receive.
     Unheard(RobotId),
+    /// The only robot that cameras alone know, and the radio number that alone radio receives.
+    OtherNumber {
+        /// Number on the shell.
+        shell: RobotId,
+        /// Number that it was flashed with.
+        radio: RobotId,
+    },
+    /// A robot that runs something else than its host expects.
+    OtherImage {
+        /// Number on the shell.
+        robot: RobotId,
+        /// What it runs.
+        runs: VersionReport,
+        /// What it should run.
+        expected: VersionReport,
+    },
 }
 
 impl TeamFault {
@@ -68,6 +85,8 @@ impl TeamFault {
             Self::Command { number } => format!("command {number}"),
             Self::Unseen(robot) => format!("unseen {robot}"),
             Self::Unheard(robot) => format!("unheard {robot}"),
+            Self::OtherNumber { shell, radio } => format!("number {shell} {radio}"),
+            Self::OtherImage { robot, .. } => format!("image {robot}"),
         }
     }
 
@@ -82,7 +101,9 @@ impl TeamFault {
     /// The label that heads its line.
     pub(super) const fn heading(&self) -> &'static str {
         match self {
-            Self::Unseen(_) | Self::Unheard(_) => "robots",
+            Self::Unseen(_) | Self::Unheard(_) | Self::OtherNumber { .. } | Self::OtherImage { .. } => {
+                "robots"
+            }
             _ => "referee",
         }
     }
@@ -137,6 +158,20 @@ impl fmt::Display for TeamFault {
                 "robot {robot} is seen by a camera, and radio does not receive it: it is not led; is it switched on, with our key and \
                  its number?"
             ),
+            Self::OtherImage { robot, runs, expected } => {
+                let parts: Vec<_> = runs.differences(expected).collect();
+                write!(
+                    f,
+                    "robot {robot} runs another {} than this host expects, {runs} in place of {expected}: flash it with `onetwo \
+                     firmware flash --board BOARD`, of the sources that this program was built from",
+                    parts.join(" and ")
+                )
+            }
+            Self::OtherNumber { shell, radio } => write!(
+                f,
+                "cameras see robot {shell}, which radio does not receive, and radio receives number {radio}, which no camera sees, \
+                 perhaps the same robot: set numbers.radio of robot {shell} to {radio} (page, Parameters, or [[numbers]] in team.toml)"
+            ),
         }
     }
 }
@@ -168,6 +203,7 @@ impl TeamChecks {
         faults.extend(self.placement(now, host));
         faults.extend(host.listener().unknown_command(now).map(|number| TeamFault::Command { number }));
         self.apart(now, host, sees, &mut faults);
+        faults.extend(host.radio().present(now).filter_map(|robot| other_image(host, robot)));
         faults
     }
 
@@ -214,6 +250,7 @@ impl TeamChecks {
         let visible = host.world().ours(us).filter(|robot| seen_lately(now, robot));
         visible.for_each(|robot| seen[robot.who.id.index()] = true);
         let led = heard.contains(&true);
+        let before = faults.len();
         for robot in RobotId::all() {
             let (heard, seen) = (heard[robot.index()], seen[robot.index()]);
             if lasts(now, &mut self.unseen[robot.index()], sees && heard && !seen) {
@@ -223,7 +260,20 @@ impl TeamChecks {
                 faults.push(TeamFault::Unheard(robot));
             }
         }
+        if let [TeamFault::Unseen(heard), TeamFault::Unheard(shell)]
+        | [TeamFault::Unheard(shell), TeamFault::Unseen(heard)] = faults[before..]
+        {
+            faults.truncate(before);
+            faults.push(TeamFault::OtherNumber { shell, radio: host.radio().numbers().radio(heard) });
+        }
     }
+}
+
+/// A robot's image, where it differs from what is expected.
+pub(crate) fn other_image(host: &Host, robot: RobotId) -> Option<TeamFault> {
+    let (expected, runs) = (host.settings().expected?, host.quality(robot)?.version()?);
+    runs.differences(&expected).next()?;
+    Some(TeamFault::OtherImage { robot, runs, expected })
 }
 
 /// Whether it holds, and has for [`APART_AFTER`].

@@ -5,6 +5,7 @@ use protocol::host::{HostMessage, Telemetry, Welcome};
 use protocol::host_link::HostLink;
 use protocol::link::Link;
 use protocol::team::TeamMessage;
+use protocol::version::VersionReport;
 use protocol::{Instant, RobotId, TeamId};
 use rules::{Colour, League};
 
@@ -40,6 +41,10 @@ fn telemetry(robot: &mut Link, follows: u32, refused_epochs: u16) -> protocol::l
     let mut refused = [0; Refusal::KINDS];
     refused[Refusal::Epoch { seen: 0, current: 0 }.kind()] = refused_epochs;
     robot.seal(&TeamMessage::Telemetry(Telemetry { host: follows, refused, ..Telemetry::default() }))
+}
+
+fn runs(image: u32) -> VersionReport {
+    VersionReport { version: [0, 2, 0], image, robot: 3, case_base: 4 }
 }
 
 fn robot() -> Link {
@@ -162,6 +167,8 @@ fn one_of_each() -> Vec<Fault> {
         Fault::Team(TeamFault::Command { number: 18 }),
         Fault::Team(TeamFault::Unseen(id())),
         Fault::Team(TeamFault::Unheard(id())),
+        Fault::Team(TeamFault::OtherNumber { shell: id(), radio: id() }),
+        Fault::Team(TeamFault::OtherImage { robot: id(), runs: runs(1), expected: runs(2) }),
         Fault::SecondHost(SecondHost::Received { epoch: 7 }),
         Fault::Referee(Warning::Several { followed: key(one), other: key(two) }),
         Fault::Strategy(refused),
@@ -222,5 +229,75 @@ fn each_finding_is_in_the_table_of_the_start_page() {
         ];
         let counted = counted.iter().any(|words| text.contains(words) && page.contains(words));
         assert!(known || counted || text.contains("without a place"), "not in docs/start.md: {text}");
+    }
+}
+
+#[test]
+fn a_robot_with_another_number_than_its_shell_is_found_and_a_parameter_joins_the_two() {
+    use ssl::Message as _;
+    let (mut host, mut checks, mut robot) = (host(), HealthChecks::default(), robot());
+    let shell = RobotId::new(4).unwrap();
+    let found = |ms: std::ops::Range<u64>, host: &mut Host, robot: &mut Link, checks: &mut HealthChecks| {
+        let mut last = Vec::new();
+        for ms in ms.step_by(20) {
+            let now = Instant(ms * 1_000);
+            let seen =
+                ssl::vision::DetectionRobot { robot_id: Some(4), confidence: 1.0, ..Default::default() };
+            let frame = ssl::vision::DetectionFrame {
+                t_capture: ms as f64 * 1e-3,
+                frame_number: ms as u32,
+                camera_id: 1,
+                robots_blue: vec![seen],
+                ..Default::default()
+            };
+            let packet = ssl::vision::WrapperPacket { detection: Some(frame), ..Default::default() };
+            host.handle(now, Input::Vision(&packet.encode_to_vec()));
+            if ms % 100 == 0 {
+                host.handle(now, Input::Robot(&telemetry(robot, EPOCH, 0)));
+                last = checks.look(now, host);
+            }
+        }
+        last.retain(|fault| matches!(fault, Fault::Team(_)));
+        last
+    };
+    let faults = found(0..3_000, &mut host, &mut robot, &mut checks);
+    assert_eq!(faults, [Fault::Team(TeamFault::OtherNumber { shell, radio: id() })]);
+    let glance = crate::glance::robots(&host, Instant(3_000_000));
+    assert_eq!(glance.iter().map(|robot| robot.shell).collect::<Vec<_>>(), [3, 4], "one for each number");
+    assert!(glance[0].cameras.is_empty() && glance[1].heard_ms.is_none(), "{glance:?}");
+
+    let set = br#"{"key":"numbers.radio","robot":4,"value":3}"#;
+    assert_eq!(host.handle(Instant(3_000_000), Input::Parameter(set)), crate::InputVerdict::Changed);
+    assert_eq!(found(3_000..6_000, &mut host, &mut robot, &mut checks), []);
+    let glance = crate::glance::robots(&host, Instant(6_000_000));
+    let [one] = &glance[..] else { panic!("{glance:?}") };
+    assert_eq!((one.shell, one.radio, one.heard_ms, &one.cameras[..]), (4, 3, Some(100), &[(1, 20)][..]));
+    let table = crate::glance::table(&glance);
+    assert!(table.contains("    4     3  1 (20)"), "{table}");
+}
+
+#[test]
+fn a_robot_with_another_image_is_named_with_the_remedy_and_one_as_expected_is_not() {
+    let settings = HostSettings::new(Colour::Blue, League::DivisionB, EPOCH);
+    for (expected, differs) in [(Some(runs(9)), true), (Some(runs(1)), false), (None, false)] {
+        let mut host = Host::new(HostSettings { expected, ..settings.clone() }, Instant(0));
+        let mut robot = robot();
+        let refused = host.handle(Instant(0), Input::Robot(&robot.seal_version(&runs(1))));
+        assert!(matches!(refused, crate::InputVerdict::Refused(_)), "{refused:?}");
+        host.handle(Instant(1), Input::Robot(&telemetry(&mut robot, EPOCH, 0)));
+        let silent = crate::glance::robots(&host, Instant(2)).remove(0).wrong;
+        assert_eq!(
+            silent.iter().any(|text| text.contains("reports no version")),
+            expected.is_some(),
+            "{silent:?}"
+        );
+        host.handle(Instant(2), Input::Robot(&robot.seal_version(&runs(1))));
+        let faults = HealthChecks::default().look(Instant(3), &host);
+        let named = faults.iter().map(ToString::to_string).find(|text| text.contains("another image"));
+        assert_eq!(named.is_some(), differs, "{faults:?}");
+        assert!(named.is_none_or(|text| text.contains("robot 3 runs") && text.contains("firmware flash")));
+        let glance = crate::glance::robots(&host, Instant(3)).remove(0);
+        assert!(glance.version.is_some_and(|version| version.starts_with("0.2.0 (image 00000001")));
+        assert_eq!(glance.wrong.len(), usize::from(differs), "{:?}", glance.wrong);
     }
 }

@@ -3,6 +3,7 @@
 use protocol::RobotId;
 
 use super::{Host, InputVerdict};
+use crate::config::parameters::KICK;
 use crate::config::{ConfigError, ParameterChange, TeamConfig};
 
 impl Host {
@@ -19,7 +20,14 @@ impl Host {
         let before = self.settings.clone();
         TeamConfig::of(&before)?.changed(&change)?.apply(&mut self.settings);
         let settings = &self.settings;
-        if let Some(robot) = change.robot.and_then(RobotId::new) {
+        if settings.radio.numbers != before.radio.numbers {
+            self.radio.renumber(settings.radio.numbers);
+            // They were reports of other robots.
+            self.robots = Default::default();
+        }
+        if change.key == KICK.key
+            && let Some(robot) = change.robot.and_then(RobotId::new)
+        {
             // Without a value what is learned holds again.
             self.gain_set.set(robot, change.value.is_some());
         }

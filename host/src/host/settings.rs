@@ -4,6 +4,7 @@
 use casebase::CaseBase;
 use geometry::GoalEnd;
 use protocol::frame::TeamKey;
+use protocol::version::VersionReport;
 use protocol::{RobotId, TeamId};
 use rules::{Colour, League};
 
@@ -47,6 +48,8 @@ pub struct HostSettings {
     pub external: bool,
     /// The case base of its robots, to retrieve from and to look up reported cases; none: the league's own.
     pub cases: Option<CaseBase<'static>>,
+    /// What its robots should run; `None`: anything. Only displayed.
+    pub expected: Option<VersionReport>,
 }
 
 impl HostSettings {
@@ -69,6 +72,7 @@ impl HostSettings {
             limits: DriveSettings::default(),
             external: false,
             cases: None,
+            expected: None,
         }
     }
 

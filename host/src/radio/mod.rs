@@ -6,6 +6,9 @@
 //! Only then it is commanded, addressed by snapshots, relayed and used by the strategy. Before, it is
 //! welcomed, at most every [`UNAUTHENTICATED_EVERY`].
 //!
+//! **Numbers.** Callers name robots by their shells, frames by their radio numbers ([`RobotNumbers`]); packets
+//! and their receivers ([`To`]) have radio numbers.
+//!
 //! **Rate.** A new snapshot goes out at once, but at most one per [`PERIOD_MIN`] (100 Hz); one that comes too
 //! early waits, the newest replaces older ones. Where no new one comes for [`PERIOD_MAX`] (60 Hz) the last
 //! goes out again, extrapolated. After [`REPEAT_MAX`] without a new one the radio stops sending: robots brake
@@ -17,6 +20,7 @@
 //! No heap: capacities are named constants, packets that do not fit are dropped and counted.
 
 mod counters;
+mod numbers;
 mod quality;
 mod snapshot;
 mod warning;
@@ -27,12 +31,14 @@ use protocol::host::{DriveLimits, HostCommand, HostMessage, PARTS_MAX, Telemetry
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
 use protocol::team::{Beacon, TeamMessage};
+use protocol::version::VersionReport;
 use protocol::{Duration, Instant, RobotId, TeamId};
 
 use crate::world::World;
 use warning::Refusals;
 
 pub use counters::Counters;
+pub use numbers::RobotNumbers;
 pub use quality::{LinkTotals, Quality, table};
 pub use snapshot::{PARTS_ROBOTS_MAX, RadioSituation};
 pub use warning::{RadioWarning, RefusalReason};
@@ -91,12 +97,21 @@ pub struct RadioSettings {
     pub relay: Relay,
     /// One-way latency of a packet: snapshots are extrapolated by it. 3 ms is what ER-Force takes for theirs.
     pub latency: Duration,
+    /// Radio numbers of the shells.
+    pub numbers: RobotNumbers,
 }
 
 impl RadioSettings {
     /// With a key of zeros over a base station.
     pub fn new(team: TeamId, epoch: u32) -> Self {
-        Self { team, key: TeamKey::ZERO, epoch, relay: Relay::ToAll, latency: Duration::millis(3) }
+        Self {
+            team,
+            key: TeamKey::ZERO,
+            epoch,
+            relay: Relay::ToAll,
+            latency: Duration::millis(3),
+            numbers: RobotNumbers::default(),
+        }
     }
 }
 
@@ -112,6 +127,8 @@ pub enum RadioReceived {
     Handshake(RobotId),
     /// Part of the problem that a robot decided on, to the host.
     Decision(RobotId, DecisionPart),
+    /// What a robot runs, to the host.
+    Version(RobotId, VersionReport),
 }
 
 /// The host's radio: queue of frames, links to robots, refusals.
@@ -127,6 +144,7 @@ pub struct Radio {
     snapshot: u8,
     /// When each snapshot went out, by its number.
     departures: [Option<Instant>; 256],
+    /// By radio number.
     robots: [Quality; RobotId::COUNT],
     /// Limits of the robots' drives, mm/s and mm/s², once the team has set any.
     limits: Option<[u16; 2]>,
@@ -175,14 +193,15 @@ impl Radio {
         commands: &[HostCommand],
     ) {
         let mut kept = heapless::Vec::<HostCommand, { RobotId::COUNT }>::new();
-        for command in commands {
+        let numbers = &self.settings.numbers;
+        for command in commands.iter().map(|command| numbers.command(command)) {
             if kept.iter().all(|known| known.to != command.to) {
                 // One per robot: there is room.
-                let _room = kept.push(command.clone());
+                let _room = kept.push(command);
             }
         }
-        self.latest =
-            Some(Latest { since: now, world: world.clone(), situation, commands: kept, fresh: true });
+        let world = world.renumbered(situation.us, |shell| numbers.radio(shell));
+        self.latest = Some(Latest { since: now, world, situation, commands: kept, fresh: true });
         self.handle_timeout(now);
     }
 
@@ -227,6 +246,12 @@ impl Radio {
         }
         let (robot, message) = match opened? {
             Opened::Believed(robot, message) => (robot, message),
+            Opened::Version(robot, report) => {
+                let (frame, quality) = (frame?, &mut self.robots[robot.index()]);
+                quality.receive(now, packet.len(), frame.epoch, frame.counter);
+                quality.report_version(report);
+                return Ok(RadioReceived::Version(self.settings.numbers.shell(robot), report));
+            }
             Opened::Unauthenticated(robot, telemetry) => {
                 self.refusals.report(now, robot, &telemetry);
                 if self.robots[robot.index()].wants_welcome(now, UNAUTHENTICATED_EVERY) {
@@ -237,35 +262,49 @@ impl Radio {
                 });
             }
         };
-        let frame = frame?;
+        let (frame, shell) = (frame?, self.settings.numbers.shell(robot));
         self.robots[robot.index()].receive(now, packet.len(), frame.epoch, frame.counter);
         match message {
             TeamMessage::Beacon(beacon) => {
                 self.relay(now, robot, packet);
-                Ok(RadioReceived::Beacon(robot, beacon))
+                Ok(RadioReceived::Beacon(shell, self.settings.numbers.beacon(beacon)))
             }
             TeamMessage::Handshake(_) => {
                 self.relay(now, robot, packet);
-                Ok(RadioReceived::Handshake(robot))
+                Ok(RadioReceived::Handshake(shell))
             }
-            TeamMessage::Decision(part) => Ok(RadioReceived::Decision(robot, part)),
+            TeamMessage::Decision(part) => Ok(RadioReceived::Decision(shell, part)),
             TeamMessage::Telemetry(telemetry) => {
                 let departed = self.departures[usize::from(telemetry.snapshot)];
                 self.refusals.report(now, robot, &telemetry);
                 self.robots[robot.index()].report(now, telemetry, departed);
-                Ok(RadioReceived::Telemetry(robot, telemetry))
+                Ok(RadioReceived::Telemetry(shell, telemetry))
             }
         }
     }
 
     /// Quality of the link to that robot; `None` until a frame of it was received.
     pub fn quality(&self, robot: RobotId) -> Option<&Quality> {
-        Some(&self.robots[robot.index()]).filter(|quality| quality.received_at().is_some())
+        let radio = self.settings.numbers.radio(robot);
+        Some(&self.robots[radio.index()]).filter(|quality| quality.received_at().is_some())
     }
 
     /// Robots whose telemetry has named our epoch within [`PRESENT`], lowest number first.
     pub fn present(&self, now: Instant) -> impl Iterator<Item = RobotId> {
-        RobotId::all().filter(move |robot| self.robots[robot.index()].is_present(now))
+        RobotId::all()
+            .filter(move |shell| self.robots[self.settings.numbers.radio(*shell).index()].is_present(now))
+    }
+
+    /// Radio numbers of the shells.
+    pub fn numbers(&self) -> &RobotNumbers {
+        &self.settings.numbers
+    }
+
+    /// Other radio numbers of the shells hold from now on; links go on by radio number.
+    pub fn renumber(&mut self, numbers: RobotNumbers) {
+        // The last snapshot and commands have the old numbers.
+        self.latest = None;
+        self.settings.numbers = numbers;
     }
 
     /// Number of frames refused, by [`Refusal::kind`].
@@ -303,7 +342,8 @@ impl Radio {
         self.last = Some(now);
         self.snapshot = self.snapshot.wrapping_add(1);
         self.departures[usize::from(self.snapshot)] = Some(now);
-        let audience: Audience = self.present(now).collect();
+        let present = RobotId::all().filter(|robot| self.robots[robot.index()].is_present(now));
+        let audience: Audience = present.collect();
         self.link.set_audience(audience);
         let there = latest.world.at(now + self.settings.latency);
         // Without robots one part goes out to an empty audience: a base station learns the host's address

@@ -14,6 +14,7 @@
 use std::fmt::Write as _;
 
 use protocol::host::{Condition, Telemetry};
+use protocol::version::VersionReport;
 use protocol::{Duration, Instant, RobotId};
 
 use super::PRESENT;
@@ -34,6 +35,7 @@ pub struct Quality {
     session: Option<Session>,
     welcomed: Option<Instant>,
     lives: u32,
+    version: Option<VersionReport>,
     trip: Counters,
     down: Share,
     up: Share,
@@ -158,6 +160,15 @@ impl Quality {
         self.start_up
     }
 
+    /// What it runs, as it has reported since it booted last.
+    pub fn version(&self) -> Option<VersionReport> {
+        self.version
+    }
+
+    pub(super) fn report_version(&mut self, report: VersionReport) {
+        self.version = Some(report);
+    }
+
     /// Number of boots seen, including the first.
     pub fn lives(&self) -> u32 {
         self.lives
@@ -185,7 +196,7 @@ impl Quality {
             session => {
                 *session = Some(Session { epoch, counter, since: now });
                 self.lives = self.lives.saturating_add(1);
-                (self.telemetry, self.start_up) = (None, None);
+                (self.telemetry, self.start_up, self.version) = (None, None, None);
                 self.up.came += 1;
             }
         }

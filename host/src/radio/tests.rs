@@ -424,3 +424,49 @@ fn limits_go_to_one_robot_with_each_snapshot_and_only_if_some_are_set() {
     both.sort_unstable();
     assert_eq!(both, [(0, 1500, DriveLimits::NONE), (3, 1500, DriveLimits::NONE)]);
 }
+
+#[test]
+fn a_robot_flashed_with_another_number_is_led_and_reported_by_its_shell() {
+    let mut given = [None; RobotId::COUNT];
+    given[4] = Some(id(0));
+    let numbers = RobotNumbers::new(given).unwrap();
+    let settings = RadioSettings { relay: Relay::No, numbers, ..RadioSettings::new(TEAM, 70) };
+    let (mut radio, mut link) = (Radio::new(settings), robot(0));
+    assert!(radio.handle_packet(ms(1), &report(&mut link, ms(1))).is_err());
+    let welcome = fetch(&mut radio);
+    assert!(matches!(deliver(&mut link, 0, ms(1), &welcome)[..], [HostMessage::Welcome(_)]));
+    let telemetry = radio.handle_packet(ms(1), &report(&mut link, ms(1)));
+    assert!(matches!(telemetry, Ok(RadioReceived::Telemetry(shell, _)) if shell == id(4)));
+    assert!(
+        radio.present(ms(1)).eq([id(4)]) && radio.quality(id(4)).is_some() && radio.quality(id(0)).is_none()
+    );
+
+    let pass = HostCommand {
+        directive: Directive::Pass {
+            at: protocol::quantized::WirePoint::default(),
+            receiver: id(4),
+            kick: protocol::host::KickOrder::Flat(300),
+            ready: true,
+        },
+        ..stand(4)
+    };
+    radio.offer(ms(5), &world(ms(5), 6, 6), situation(), &[stand(0), pass]);
+    let packets = fetch(&mut radio);
+    let messages = deliver(&mut link, 0, ms(6), &packets);
+    // The robot on shell 4 stands at x = 2 m, and finds itself there as number 0.
+    let ours = messages.iter().find_map(|message| match message {
+        HostMessage::World(part) => part.robots.iter().find(|robot| u8::from(robot.who) == 0),
+        _ => None,
+    });
+    assert!((2_000..2_020).contains(&ours.unwrap().pose.at.x), "{ours:?}");
+    let command = messages.iter().find_map(|message| match message {
+        HostMessage::Command(command) => Some(command.clone()),
+        _ => None,
+    });
+    let command = command.unwrap();
+    assert_eq!(command.to, id(0));
+    assert!(
+        matches!(command.directive, Directive::Pass { receiver, .. } if receiver == id(0)),
+        "{command:?}"
+    );
+}

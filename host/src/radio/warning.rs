@@ -35,6 +35,16 @@ pub enum RadioWarning {
     OtherVersion(u8),
 }
 
+impl RadioWarning {
+    /// Radio number of the robot that it is about; `None`: of the channel.
+    pub(crate) const fn robot(self) -> Option<RobotId> {
+        match self {
+            Self::LaterHost(robot, _) | Self::Refuses(robot, _) | Self::WrongKey(robot) => Some(robot),
+            Self::OtherHost(_) | Self::OtherTeam(_) | Self::OtherVersion(_) => None,
+        }
+    }
+}
+
 /// Why a robot refuses frames, as its telemetry counts them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefusalReason {

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::case_table;
 use crate::HostSettings;
 use crate::config::{DriveSettings, KICK_RANGE};
-use crate::radio::{RadioSettings, Relay};
+use crate::radio::{RadioSettings, Relay, RobotNumbers};
 use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::cases_of;
 use crate::strategy::{Tactics, Team};
@@ -104,6 +104,9 @@ pub struct HostHeader {
     /// Whether a strategy in another program gave orders.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub external: bool,
+    /// Robots that were given a radio number: shell number and radio number.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub numbers: Vec<(RobotId, RobotId)>,
 }
 
 /// Why a header builds no host.
@@ -204,6 +207,7 @@ impl HostHeader {
             speed_limit: None,
             acceleration_limit: None,
             external: false,
+            numbers: RobotId::all().filter_map(|id| Some((id, radio.numbers.given(id)?))).collect(),
         }
     }
 
@@ -254,6 +258,7 @@ impl HostHeader {
             limits: self.limits()?,
             external: self.external,
             cases,
+            expected: None,
         })
     }
 
@@ -317,7 +322,15 @@ impl HostHeader {
             epoch: self.epoch,
             relay: *relay,
             latency: Duration(self.way_us),
+            numbers: self.numbers()?,
         })
+    }
+
+    fn numbers(&self) -> Result<RobotNumbers, HeaderError> {
+        let mut given = [None; RobotId::COUNT];
+        self.numbers.iter().for_each(|(shell, radio)| given[shell.index()] = Some(*radio));
+        RobotNumbers::new(given)
+            .map_err(|[one, other]| wrong(format!("numbers: robots {one} and {other} have one radio number")))
     }
 }
 

@@ -5,6 +5,7 @@
 //! which is 0 when the loop starts.
 
 use std::io;
+use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,7 +13,8 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use protocol::frame::TeamKey;
-use rules::{Colour, Phase};
+use protocol::version::{VersionReport, hash_of, parse_hash, parts_of};
+use rules::{Colour, Phase, RobotSpec};
 use ssl::Message;
 use ssl::log::MessageKind;
 use ssl::net::{Interfaces, NetSender};
@@ -20,13 +22,15 @@ use ssl::net::{Interfaces, NetSender};
 use super::alarms::Alarms;
 use super::inbox::{Inbox, Mail, Source};
 use super::radio_alarms::RadioAlarms;
+use super::remote_thread::{self, RemoteAnswer};
 use super::tuning::{Tuning, keep_learned};
 use super::watch::Watch;
 use super::{Operator, Program, RunError, RunSettings, identity, port_for_teams, threads};
-use crate::config::TeamConfig;
+use crate::config::{RobotLink, TeamConfig};
 use crate::radio::RadioSettings;
 use crate::record::header::RecordingHeader;
 use crate::record::{BackgroundRecorder, Recorder};
+use crate::referee::remote::RemoteRequest;
 use crate::referee::team_port::TeamPortRequest;
 use crate::shell::{Link, Outbox, StrategyProcess};
 use crate::strategy::Task;
@@ -68,11 +72,19 @@ pub(super) fn run(
         limits: config.limits,
         tactics: config.tactics,
         learns: settings.learns,
-        radio: RadioSettings { key, relay: link.relay(), ..by_default.radio },
+        radio: RadioSettings { key, relay: link.relay(), numbers: config.numbers, ..by_default.radio },
         external: config.strategy.is_some(),
         cases: settings.cases,
         ..by_default
     };
+    // Robots in a simulator are processes of this program.
+    let expected = (!matches!(config.robots, RobotLink::Simulator(_))).then(|| VersionReport {
+        version: parts_of(settings.program.version),
+        image: parse_hash(settings.program.image),
+        robot: hash_of(RobotSpec::TEXT.as_bytes()),
+        case_base: host_settings.case_base().hash(),
+    });
+    let host_settings = HostSettings { expected, ..host_settings };
     let strategy =
         config.strategy.as_deref().map(|command| StrategyProcess::start(command, STRATEGY_PATIENCE));
     let strategy = strategy.transpose().map_err(RunError::Strategy)?;
@@ -85,7 +97,7 @@ pub(super) fn run(
     operator.started();
 
     let watch = Watch::new(link.advice());
-    let (channels, threads) = Threads::start(config, link, strategy);
+    let (channels, threads) = Threads::start(config, link, strategy, settings.remote);
     let mut event_loop = EventLoop {
         host: Host::new(host_settings, protocol::Instant(0)),
         began: Instant::now(),
@@ -139,12 +151,14 @@ fn header(settings: &HostSettings, program: Program<'_>) -> RecordingHeader {
 }
 
 /// What connects the loop with its threads.
-struct Channels {
+pub(super) struct Channels {
     mail: Arc<Inbox>,
     /// Frames to the robots.
     out: Arc<Mutex<Outbox>>,
     /// Requests to the game controller.
     ask: Sender<TeamPortRequest>,
+    /// Requests to the game controller as a remote control.
+    pub(super) remote: Sender<RemoteRequest>,
     /// Views for the team's own strategy.
     view: Sender<String>,
 }
@@ -160,6 +174,7 @@ impl Threads {
         config: &TeamConfig,
         link: Box<dyn Link>,
         strategy: Option<StrategyProcess>,
+        remote_port: Option<SocketAddr>,
     ) -> (Channels, Self) {
         let (mail, out) = (Arc::new(Inbox::new()), Arc::new(Mutex::new(Outbox::default())));
         let end = Arc::new(AtomicBool::new(false));
@@ -174,11 +189,15 @@ impl Threads {
             let who = (config.name.clone(), config.colour, config.keeper);
             threads.push(port_for_teams::talk(address, who, asked, mail.clone(), end.clone()));
         }
+        let (remote, asked) = mpsc::channel();
+        if let Some(address) = remote_port {
+            threads.push(remote_thread::talk(address, config.colour, asked, mail.clone(), end.clone()));
+        }
         let (view, views) = mpsc::channel();
         if let Some(strategy) = strategy {
             threads.push(threads::ask_strategy(strategy, views, mail.clone(), end.clone()));
         }
-        (Channels { mail, out, ask, view }, Self { end, threads })
+        (Channels { mail, out, ask, remote, view }, Self { end, threads })
     }
 
     /// Ends all of them.
@@ -201,7 +220,7 @@ struct Counts {
 pub(super) struct EventLoop<'o> {
     pub(super) host: Host,
     began: Instant,
-    channels: Channels,
+    pub(super) channels: Channels,
     us: Colour,
     recorder: Option<BackgroundRecorder>,
     /// Error of a recording that ended before the match.
@@ -299,6 +318,11 @@ impl EventLoop<'_> {
                 self.lines.push(line);
             }
             Mail::Note(line) => self.lines.push(line),
+            Mail::Remote(RemoteAnswer::State(state)) => self.operator.remote(state.as_ref()),
+            Mail::Remote(RemoteAnswer::Refused(reason)) => {
+                self.lines.push(format!("remote control  {reason}"));
+                self.operator.refuse(reason);
+            }
             Mail::Slow(line) => self.alarms.slow(now, line),
         }
     }

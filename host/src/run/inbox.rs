@@ -6,6 +6,7 @@
 //! that is being handled. When a lane is full its oldest entry is dropped and counted. Memory is bounded by
 //! [`LANE_BYTES_MAX`] of vision and as much of the referee; a datagram has as many bytes as UDP carries.
 
+use super::remote_thread::RemoteAnswer;
 use std::collections::VecDeque;
 use std::net::SocketAddr;
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -71,6 +72,8 @@ pub(super) enum Mail {
     Trouble(Source, String),
     /// A line for the operator.
     Note(String),
+    /// An answer of the game controller to our remote control.
+    Remote(RemoteAnswer),
     /// The robots' line is too slow, with the rate it would need.
     Slow(String),
 }

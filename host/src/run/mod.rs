@@ -13,6 +13,7 @@ mod identity;
 mod inbox;
 mod port_for_teams;
 mod radio_alarms;
+mod remote_thread;
 mod requests;
 mod threads;
 mod tuning;
@@ -31,6 +32,7 @@ use ssl::net::{addresses, resolve_destination};
 use crate::Host;
 use crate::config::{ParameterChange, RobotLink, TeamConfig};
 use crate::health_checks::Finding;
+use crate::referee::remote::{RemoteRequest, RemoteState};
 use crate::robot_test::TestOrder;
 use crate::shell::{Link, SimSettings};
 
@@ -51,6 +53,8 @@ pub struct RunSettings<'a> {
     pub cases: Option<CaseBase<'static>>,
     /// Robots that are started as processes in a simulator, and flags for them.
     pub virtual_robots: VirtualRobots,
+    /// The game controller's port for remote controls; `None`: there is no remote control.
+    pub remote: Option<SocketAddr>,
     /// Files that are written.
     pub output: OutputFiles<'a>,
     /// Time after which the loop ends, s; none: until it is stopped.
@@ -64,6 +68,8 @@ pub struct Program<'a> {
     pub version: &'a str,
     /// The commit that it was built from.
     pub commit: &'a str,
+    /// Hash of the sources of the robots' images, hexadecimal; `None`: unknown.
+    pub image: Option<&'a str>,
 }
 
 /// Robots that this program starts in a simulator, each as a process of the program's own file.
@@ -97,6 +103,8 @@ pub enum Request {
     Test(TestOrder),
     /// Changed parameters are saved to the team's file.
     Save,
+    /// Our team's remote control asks the game controller for something.
+    Remote(RemoteRequest),
 }
 
 /// Whoever watches a host that runs: a terminal, a page, or nobody. Calls must return at once: the thread
@@ -118,6 +126,8 @@ pub trait Operator {
     fn fault(&mut self, _now: Instant, _fault: String) {}
     /// A parameter was changed.
     fn changed(&mut self) {}
+    /// State of our team by the game controller's port for remote controls; `None`: no connection.
+    fn remote(&mut self, _state: Option<&RemoteState>) {}
     /// The host after an input, with what does not fit at the moment.
     fn look(&mut self, _now: Instant, _host: &Host, _findings: &[Finding]) {}
     /// The next request, if there is one.

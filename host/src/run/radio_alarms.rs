@@ -25,7 +25,11 @@ impl RadioAlarms {
                 Some((_, at)) => *at = now,
                 None => self.message.push((warning, now)),
             }
-            lines.push(format!("radio    {warning}"));
+            let shell = warning.robot().map(|robot| (robot, radio.numbers().shell(robot)));
+            let shell = shell.filter(|(robot, shell)| robot != shell);
+            let shell =
+                shell.map(|(robot, shell)| format!(" ({robot} is the radio number of shell {shell})"));
+            lines.push(format!("radio    {warning}{}", shell.unwrap_or_default()));
         }
         lines
     }

@@ -20,6 +20,11 @@ impl EventLoop<'_> {
                 }
                 Request::Change(change) => self.change(change).map(Some),
                 Request::Test(order) => self.test(order),
+                // Without a remote control no thread receives it.
+                Request::Remote(request) => match self.channels.remote.send(request) {
+                    Ok(()) => Ok(Some(format!("remote control  asked for on the page: {}", request.name()))),
+                    Err(_) => Err("start control with --remote HOST to use its remote control".to_owned()),
+                },
                 Request::Save => self.tuning.save().map(Some),
             };
             match done {

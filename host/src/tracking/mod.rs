@@ -52,7 +52,7 @@ mod seen;
 pub mod senders;
 
 use motion::ball::BallModel;
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, RobotId, Who};
 use ssl::vision::{DetectionFrame, WrapperPacket};
 
 pub use ball::BallCounts;
@@ -67,9 +67,9 @@ use self::clock::{Clock, Judgement, plausible};
 use self::order::{Placed, Timeline};
 use self::robots::Robots;
 use self::scene::Scene;
-use self::seen::{Captured, Frame, captured};
+use self::seen::{CAMERAS_MAX, Captured, Frame, captured};
 use crate::field_geometry::VisionGeometry;
-use crate::world::{BallModels, World};
+use crate::world::{BallModels, World, index};
 
 /// Settings of a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -200,6 +200,8 @@ pub struct Tracker {
     state: State,
     /// The present camera frame, kept to reuse its memory.
     frame: Frame,
+    /// When each camera detected each robot last, our clock; by team and number.
+    sightings: [[[Option<Instant>; CAMERAS_MAX]; RobotId::COUNT]; 2],
     counts: TrackingCounts,
 }
 
@@ -221,6 +223,7 @@ impl Tracker {
             timeline: Timeline::new(state),
             state,
             frame: Frame::empty(),
+            sightings: [[[None; CAMERAS_MAX]; RobotId::COUNT]; 2],
             counts: TrackingCounts::default(),
         }
     }
@@ -241,6 +244,9 @@ impl Tracker {
             return VisionVerdict::Nonsense;
         }
         let (camera, stamp) = (self.frame.camera, self.frame.at);
+        for Who { colour, id } in self.frame.robots.iter().map(|seen| seen.who) {
+            self.sightings[index(colour)][id.index()][camera as usize] = Some(arrived);
+        }
         let sent = plausible(captured(image.t_sent), stamp);
         let in_time = self.cameras.receive(&mut self.frame, sent, arrived);
         let verdict = self.fuse(sent.map(|sent| sent - stamp), arrived, in_time);
@@ -337,6 +343,12 @@ impl Tracker {
     /// The cameras heard lately: their clocks, delays and rates.
     pub fn cameras(&self, now: Instant) -> impl Iterator<Item = CameraStatus> {
         self.cameras.status(now)
+    }
+
+    /// The cameras that have detected a robot of that number, whether it is tracked or not, and when last.
+    pub fn sightings(&self, who: Who) -> impl Iterator<Item = (u32, Instant)> {
+        let cameras = (0..).zip(&self.sightings[index(who.colour)][who.id.index()]);
+        cameras.filter_map(|(camera, at)| Some((camera, (*at)?)))
     }
 
     /// Counts of packets so far.

@@ -125,6 +125,11 @@ pub(crate) fn team_port(text: &str) -> Result<SocketAddr, String> {
     resolve_destination(text, Some(addresses::TEAM_PORT))
 }
 
+/// A game controller's port for remote controls: `HOST[:PORT]`.
+pub(crate) fn remote_port(text: &str) -> Result<SocketAddr, String> {
+    resolve_destination(text, Some(addresses::REMOTE_PORT))
+}
+
 /// A machine without a port.
 pub(crate) fn machine(text: &str) -> Result<IpAddr, String> {
     let (host, _) = split_address(text, Some(0))

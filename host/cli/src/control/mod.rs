@@ -22,7 +22,9 @@ use ssl::net::addresses;
 
 use crate::Failure;
 use crate::args::page::PageArgs;
-use crate::args::parsers::{RobotIds, address, destination, kick, robot_ids, seconds, team_port};
+use crate::args::parsers::{
+    RobotIds, address, destination, kick, remote_port, robot_ids, seconds, team_port,
+};
 use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::destination::{self, FileKind, check_recording};
 use crate::library;
@@ -99,6 +101,10 @@ pub(crate) struct ControlArgs {
     /// announced to the game controller.
     #[arg(long, value_name = "HOST[:PORT]", value_parser = team_port)]
     game_controller: Option<SocketAddr>,
+    /// The game controller's port for remote controls (10011): the page's tab Control then asks for timeouts,
+    /// substitutions, the challenge flag, an emergency stop and the keeper, with --live-parameters.
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = remote_port)]
+    remote: Option<SocketAddr>,
     /// A program that gives the robots' orders, such as `python3 my_team.py`: it gets the view as a line
     /// of JSON and answers with one (docs/strategy-protocol.md). While it does not answer, robots stand.
     #[arg(long, value_name = "COMMAND")]
@@ -134,6 +140,10 @@ pub(crate) struct ControlArgs {
     /// this they may ask for HALT only.
     #[arg(long, conflicts_with = "headless")]
     live_parameters: bool,
+    /// Print our robots at a glance every so many seconds: cameras, radio, battery, faults, and what is not as
+    /// it should be.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    glance: Option<f64>,
     /// End after this number of seconds; else Ctrl-C ends it, and robots are halted first.
     #[arg(short, long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
@@ -182,10 +192,15 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     });
     let settings = RunSettings {
         config: &config,
-        program: Program { version: env!("CARGO_PKG_VERSION"), commit: env!("ONETWO_COMMIT") },
+        program: Program {
+            version: env!("CARGO_PKG_VERSION"),
+            commit: env!("ONETWO_COMMIT"),
+            image: option_env!("ONETWO_IMAGE_SOURCES"),
+        },
         learns: !args.no_learning,
         cases: cases.library_handle.as_ref().map(LibraryHandle::lasting_base),
         virtual_robots: VirtualRobots { ids: robots, arguments: cases.robot_arguments },
+        remote: args.remote,
         output: OutputFiles {
             record: args.record.as_deref(),
             learned: args.learned.as_deref(),
@@ -193,7 +208,8 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         },
         duration: args.duration,
     };
-    let mut operator = ControlOperator::new(&config, args.config.clone(), page_settings);
+    let mut operator =
+        ControlOperator::new(&config, args.config.clone(), page_settings).glancing(args.glance);
     host::run::run(&settings, &mut operator, stopped_by_hand())?;
     Ok(ExitCode::SUCCESS)
 }
@@ -258,6 +274,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         game_controller: args.game_controller,
         strategy: args.strategy.clone(),
         calibration: args.kicks.clone(),
+        numbers: Vec::new(),
         ball: BallSettings::default(),
         limits: DriveSettings::default(),
         tactics: None,

@@ -11,6 +11,7 @@ use feed::{
 use host::Host;
 use host::config::TeamConfig;
 use host::health_checks::Finding;
+use host::referee::remote::{RemoteRequest, RemoteState};
 use host::run::{Operator, Request};
 use page::{MatchEvent, Page, Powers, UserRequest};
 
@@ -34,6 +35,8 @@ pub(super) struct ControlOperator<'a> {
     page_settings: Option<PageSettings<'a>>,
     terminal: Option<Terminal>,
     dashboard: Option<Dashboard>,
+    /// Time between two tables of the robots, and when the next is due.
+    glance: Option<(protocol::Duration, protocol::Instant)>,
 }
 
 impl<'a> ControlOperator<'a> {
@@ -42,7 +45,13 @@ impl<'a> ControlOperator<'a> {
         file: Option<PathBuf>,
         page_settings: Option<PageSettings<'a>>,
     ) -> Self {
-        Self { config, file, page_settings, terminal: None, dashboard: None }
+        Self { config, file, page_settings, terminal: None, dashboard: None, glance: None }
+    }
+
+    /// The robots at a glance are printed every so many seconds.
+    pub(super) fn glancing(self, every_s: Option<f64>) -> Self {
+        let every = every_s.map(|seconds| protocol::Duration((seconds * 1e6) as u64));
+        Self { glance: every.map(|every| (every, protocol::Instant(0) + every)), ..self }
     }
 
     fn on_page(&mut self, act: impl FnOnce(&mut Dashboard)) {
@@ -98,7 +107,16 @@ impl Operator for ControlOperator<'_> {
         self.on_page(|dashboard| dashboard.parameters.hasten());
     }
 
+    fn remote(&mut self, state: Option<&RemoteState>) {
+        let state = serde_json::to_value(state).ok();
+        self.on_page(|dashboard| dashboard.remote = state);
+    }
+
     fn look(&mut self, now: protocol::Instant, host: &Host, findings: &[Finding]) {
+        if let Some((every, due)) = self.glance.filter(|(_, due)| *due <= now) {
+            self.glance = Some((every, due + every));
+            self.line(host::glance::table(&host::glance::robots(host, now)));
+        }
         if let Some(dashboard) = &mut self.dashboard {
             dashboard.look(now, host, findings);
             let name = self.file.as_deref().map(printable_path);
@@ -142,6 +160,7 @@ fn request_of(request: UserRequest) -> Option<Result<Request, String>> {
             change_of(&key, robot, value.as_ref()).map(Request::Change)
         }
         UserRequest::Save {} => Ok(Request::Save),
+        UserRequest::Remote { request, robot } => RemoteRequest::named(&request, robot).map(Request::Remote),
         _ => return None,
     })
 }
@@ -153,6 +172,8 @@ struct Dashboard {
     ledger: LedgerFeed,
     parameters: ParameterFeed,
     drawn_at: Option<Instant>,
+    /// State by the game controller's port for remote controls; null: no connection.
+    remote: Option<serde_json::Value>,
     /// Time an input takes, as a sliding mean.
     took: Duration,
 }
@@ -172,6 +193,7 @@ impl Dashboard {
             ledger: LedgerFeed::new(library.as_ref()),
             parameters: ParameterFeed::default(),
             drawn_at: None,
+            remote: None,
             took: Duration::ZERO,
         })
     }
@@ -188,6 +210,7 @@ impl Dashboard {
             let mut deferred_scene = self.composer.compose(moment);
             deferred_scene.scene.alarms = findings.iter().map(ToString::to_string).collect();
             deferred_scene.scene.findings = findings.iter().map(Finding::to_json).collect();
+            deferred_scene.scene.remote.clone_from(&self.remote);
             for match_event in self.composer.take_match_events() {
                 self.page.push(match_event);
             }

@@ -140,6 +140,7 @@ impl Dashboard {
                 | UserRequest::Parameter { .. }
                 | UserRequest::Kicks { .. }
                 | UserRequest::Drive { .. }
+                | UserRequest::Remote { .. }
                 | UserRequest::Save {} => {
                     self.page.refuse("that can be asked of `onetwo play`; here others command the robots");
                 }

@@ -26,8 +26,11 @@ fn plots_have_a_cursor_and_seek_and_the_log_is_searched() {
     .unwrap();
     tab.wait("document.querySelectorAll('#cameras tbody tr').length === onetwo.store.scene.cameras.length")
         .unwrap();
-    let unknown = "document.getElementById('vitals').textContent.includes('firmware version: not reported')";
-    tab.wait(unknown).unwrap();
+    // Our robots at a glance: camera and radio of each, and no fault.
+    tab.wait("onetwo.store.scene.glance.length === 12 && onetwo.store.scene.glance.every((r) => r.cameras[0][1] < 500 && r.heard_ms < 500 && r.radio === r.shell)").unwrap();
+    tab.wait("document.querySelectorAll('#glance tbody tr').length === 12").unwrap();
+    tab.wait("/^4\\s*4\\d: \\d+ ms.*none/.test(document.querySelector('[data-glance=blue4]').closest('tr').textContent)").unwrap();
+    tab.click("[data-glance=blue4]").unwrap();
 
     // The plot of a robot's speed: the value at the moment, then at a cursor that keys move.
     tab.eval("document.querySelector('[data-plot-robot=yellow0]').click()").unwrap();

@@ -6,6 +6,7 @@
 
 mod autoref;
 pub mod ci;
+pub mod remote;
 
 use prost::{Enumeration, Message, Oneof};
 

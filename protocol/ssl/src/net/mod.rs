@@ -45,6 +45,8 @@ pub mod addresses {
     pub const AUTOREF_PORT: u16 = 10007;
     /// Game controller's TCP port for teams.
     pub const TEAM_PORT: u16 = 10008;
+    /// TCP port of the game controller for teams' remote controls.
+    pub const REMOTE_PORT: u16 = 10011;
     /// A simulator's UDP port for [`SimulatorCommand`](crate::simulation::SimulatorCommand).
     pub const SIMULATOR_PORT: u16 = 10300;
     /// A simulator's UDP port for the blue team's [`RobotControl`](crate::simulation::RobotControl).
