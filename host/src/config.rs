@@ -14,6 +14,7 @@
 //! referee_source = "192.168.1.5"  # accept only this referee: address or identifier; left out: the strictest
 //! referee_silence = "halt"        # after 2 s without a referee; "go-on": its last command is kept
 //! tracker = "224.5.23.2:10010"
+//! tracker_in = "224.5.23.2:10010,TIGERs"  # another program's tracker in place of vision while it sends
 //! game_controller = "127.0.0.1:10008"   # the team's port; left out: no messages to the controller
 //! strategy = "python3 my_team.py" # program that gives the orders; left out: the program's own coach does
 //! tactics = "default"             # of the coach; none, all, or some of their names
@@ -35,6 +36,7 @@ mod change;
 pub mod parameters;
 mod text;
 
+use std::fmt;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
@@ -42,7 +44,7 @@ use foreign::excerpt;
 use protocol::RobotId;
 use rules::{Colour, League};
 use serde::Deserialize;
-use ssl::net::{addresses, split_address};
+use ssl::net::{addresses, resolve, split_address};
 
 use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::Tactics;
@@ -92,6 +94,8 @@ pub struct TeamSettings {
     /// Address to which tracker packets are sent.
     #[serde(default, deserialize_with = "text::destination")]
     pub tracker: Option<SocketAddr>,
+    /// Another program's tracker that is followed: see [`TrackerIn`].
+    pub tracker_in: Option<String>,
     /// The game controller's port for teams.
     #[serde(default, deserialize_with = "text::team_port")]
     pub game_controller: Option<SocketAddr>,
@@ -176,6 +180,8 @@ pub struct TeamConfig {
     pub referee_silence: OnSilence,
     /// Address to which tracker packets are sent.
     pub tracker: SocketAddr,
+    /// The tracker of another program that is followed while it sends; none: vision alone.
+    pub tracker_in: Option<TrackerIn>,
     /// The game controller's port for teams.
     pub game_controller: Option<SocketAddr>,
     /// Command of the strategy that gives the orders; none: the coach does.
@@ -188,6 +194,38 @@ pub struct TeamConfig {
     pub limits: DriveSettings,
     /// The tactics of the program's coach.
     pub tactics: Tactics,
+}
+
+/// The tracker of another program that takes the place of vision while it sends.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TrackerIn {
+    /// Multicast group and port, or a port of this machine.
+    pub address: SocketAddr,
+    /// Name or identifier of the source; none: the first that sends.
+    pub name: Option<String>,
+}
+
+impl TrackerIn {
+    /// From `HOST:PORT` or `HOST:PORT,NAME`.
+    pub fn parse(text: &str) -> Result<Self, ConfigError> {
+        let (address, name) = match text.split_once(',') {
+            Some((address, name)) => (address, Some(name.trim().to_owned())),
+            None => (text, None),
+        };
+        let address = resolve(address.trim(), None)
+            .map_err(|reason| error("tracker_in", format!("{reason}; HOST:PORT or HOST:PORT,NAME")))?;
+        if name.as_deref() == Some("") {
+            return Err(error("tracker_in", "no name after the comma; HOST:PORT or HOST:PORT,NAME"));
+        }
+        Ok(Self { address, name })
+    }
+}
+
+impl fmt::Display for TrackerIn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.address)?;
+        self.name.iter().try_for_each(|name| write!(f, ",{name}"))
+    }
 }
 
 /// Links to the robots.
@@ -252,6 +290,7 @@ impl TeamSettings {
             referee_source: self.referee_source.or(below.referee_source),
             referee_silence: self.referee_silence.or(below.referee_silence),
             tracker: self.tracker.or(below.tracker),
+            tracker_in: self.tracker_in.or(below.tracker_in),
             game_controller: self.game_controller.or(below.game_controller),
             strategy: self.strategy.or(below.strategy),
             calibration: if self.calibration.is_empty() { below.calibration } else { self.calibration },
@@ -295,6 +334,7 @@ impl TeamSettings {
             referee_source: self.referee_source.as_deref().map(pin).transpose()?,
             referee_silence: self.referee_silence.as_deref().map_or(Ok(OnSilence::default()), on_silence)?,
             tracker: self.tracker.unwrap_or_else(|| addresses::TRACKER.into()),
+            tracker_in: self.tracker_in.as_deref().map(TrackerIn::parse).transpose()?,
             game_controller: self.game_controller,
             strategy: self.strategy,
             kick,
@@ -406,6 +446,7 @@ mod tests {
         assert!(refused("referee_silence = 'wait'").to_string().contains("halt (after 2 s) or go-on"));
         assert!(refused("league = \"four-legged\"").to_string().contains("division-b"));
         assert!(refused("[[calibration]]\nrobot = 1\nkick = 9.0").to_string().contains("calibration.kick"));
+        assert!(refused("tracker_in = 'x,'").to_string().contains("HOST:PORT,NAME"));
         assert!(refused("[ball]\nroll = 9.0").to_string().contains("ball.roll"));
         for link in [
             "",

@@ -13,7 +13,10 @@ use arena::CaseNames;
 use arena::cases::LibraryHandle;
 use arena::game::{self, Game, GameConfig, GameReport, MatchLog, StrategyReport, Watcher, Watchers};
 use clap::Args;
-use feed::{CaseExplanations, End, MatchObserver, MatchRunner, RunSettings, SharedLibrary};
+use feed::{
+    CaseExplanations, End, MatchObserver, MatchRunner, MomentSource, RecentMoments, RunSettings,
+    SharedLibrary,
+};
 use hil_sim::NativeBackend;
 use hil_sim::small_size::network::ControllerChoice;
 use hil_sim::small_size::worlds::WorldChoice;
@@ -201,7 +204,9 @@ fn on_page(
 ) -> Result<ExitCode, Failure> {
     let settings = args.settings.choose()?.settings;
     let library = SharedLibrary::new(library_handle);
-    let explanations = CaseExplanations::sharing(library.clone(), settings);
+    let moments = RecentMoments::default();
+    let explanations =
+        CaseExplanations::sharing(library.clone(), settings).playing_on(MomentSource::Match(moments.clone()));
     let world =
         if args.world == WorldChoice::Nominal { String::new() } else { format!(", world {}", args.world) };
     let [blue, yellow] = [(args.blue, &args.blue_strategy), (args.yellow, &args.yellow_strategy)]
@@ -210,7 +215,7 @@ fn on_page(
     let page = args.page.open(title, false, Powers::Simulation, explanations)?;
     note!("playing  {}; Ctrl-C ends it", args.league.name());
     let (speed, recorded) = (args.speed, args.record.is_some());
-    let settings = RunSettings { speed, recorded, log: program_log(), stopped: stopped_by_hand() };
+    let settings = RunSettings { speed, recorded, log: program_log(), stopped: stopped_by_hand(), moments };
     let mut match_runner = MatchRunner::new(config, library, page, settings);
     loop {
         let (report, over) = match match_runner.play(&mut watched)? {

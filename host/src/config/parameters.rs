@@ -238,7 +238,7 @@ pub(super) const ACCELERATION: Parameter = Parameter {
 };
 
 /// Every parameter, in the order of the file: those of no table first.
-pub const PARAMETERS: [Parameter; 20] = [
+pub const PARAMETERS: [Parameter; 21] = [
     usual("name", "as the game controller knows the team", |c| Some(text_of(&c.name))),
     usual("colour", "blue or yellow", |c| Some(text_of(&c.colour.label()))),
     usual("league", "ssl-2013, division-b or division-a", |c| Some(text_of(&c.league.name()))),
@@ -270,6 +270,12 @@ pub const PARAMETERS: [Parameter; 20] = [
         Some(text_of(&c.referee_silence.label()))
     }),
     usual("tracker", "where our tracker's packets go", |c| Some(text_of(&c.tracker))),
+    optional(
+        "tracker_in",
+        "another program's tracker in place of vision while it sends: HOST:PORT[,NAME]",
+        ("vision alone", "\"224.5.23.2:10010,TIGERs\""),
+        |c| c.tracker_in.as_ref().map(|tracker| text_of(tracker)),
+    ),
     optional(
         "game_controller",
         "its port for teams",

@@ -15,6 +15,7 @@ mod port_for_teams;
 mod radio_alarms;
 mod requests;
 mod threads;
+mod tracker_input;
 mod tuning;
 mod watch;
 

@@ -95,6 +95,11 @@ pub(crate) struct ControlArgs {
     /// Where our tracker's packets go: 224.5.23.2:10010.
     #[arg(long, value_name = "HOST:PORT", value_parser = destination)]
     tracker: Option<SocketAddr>,
+    /// Another program's tracker that takes the place of vision while it sends, such as
+    /// 224.5.23.2:10010,TIGERs: address, and name or identifier of the source (the first that sends, without
+    /// one). Where it is silent for 0.1 s vision is tracked, and 0.5 s after it is back it leads again.
+    #[arg(long, value_name = "HOST:PORT[,NAME]")]
+    tracker_in: Option<String>,
     /// The game controller's port for teams, such as 127.0.0.1:10008. If omitted, the goalkeeper is not
     /// announced to the game controller.
     #[arg(long, value_name = "HOST[:PORT]", value_parser = team_port)]
@@ -255,6 +260,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         referee_source: args.referee_source.clone(),
         referee_silence: args.referee_silence.clone(),
         tracker: args.tracker,
+        tracker_in: args.tracker_in.clone(),
         game_controller: args.game_controller,
         strategy: args.strategy.clone(),
         calibration: args.kicks.clone(),
