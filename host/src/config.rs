@@ -27,6 +27,11 @@
 //! [ball]
 //! roll = 0.41                     # deceleration of a rolling ball, m/s²; left out: vision's
 //!
+//! [practice]                      # on a part of the field; left out: all of it
+//! within = "+x"                   # half +x, -x, +y or -y, or two corners X,Y,X,Y in mm
+//! without = "0,2000,1000,3000"    # a rectangle that is left out
+//! cameras = "2,3"                 # cameras that are left out
+//!
 //! [limits]                        # of our robots' drives; their own hold where they are stricter
 //! speed = 2.0                     # m/s; left out: their own
 //! acceleration = 2.5              # m/s²; left out: their own
@@ -35,8 +40,8 @@
 mod change;
 pub mod parameters;
 mod text;
+mod tracker_in;
 
-use std::fmt;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
@@ -44,16 +49,19 @@ use foreign::excerpt;
 use protocol::RobotId;
 use rules::{Colour, League};
 use serde::Deserialize;
-use ssl::net::{addresses, resolve, split_address};
+use ssl::net::{addresses, split_address};
 
+use crate::practice::Practice;
 use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::Tactics;
 
+pub use crate::practice::PracticeSettings;
 pub use change::ParameterChange;
 pub(crate) use parameters::KICK_RANGE;
+pub use tracker_in::TrackerIn;
 
 /// Longest part of an error in a file of settings that is printed, characters.
-const MESSAGE_CHARS_MAX: usize = 300;
+const MESSAGE_CHARS_MAX: usize = 400;
 /// Longest part of its line that is printed, characters.
 const LINE_CHARS_MAX: usize = 80;
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
@@ -112,6 +120,9 @@ pub struct TeamSettings {
     /// Limits of our robots' motion.
     #[serde(default)]
     pub limits: DriveSettings,
+    /// The part of the field that is practised on.
+    #[serde(default)]
+    pub practice: PracticeSettings,
 }
 
 /// Motion of the ball on the field.
@@ -194,38 +205,8 @@ pub struct TeamConfig {
     pub limits: DriveSettings,
     /// The tactics of the program's coach.
     pub tactics: Tactics,
-}
-
-/// The tracker of another program that takes the place of vision while it sends.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TrackerIn {
-    /// Multicast group and port, or a port of this machine.
-    pub address: SocketAddr,
-    /// Name or identifier of the source; none: the first that sends.
-    pub name: Option<String>,
-}
-
-impl TrackerIn {
-    /// From `HOST:PORT` or `HOST:PORT,NAME`.
-    pub fn parse(text: &str) -> Result<Self, ConfigError> {
-        let (address, name) = match text.split_once(',') {
-            Some((address, name)) => (address, Some(name.trim().to_owned())),
-            None => (text, None),
-        };
-        let address = resolve(address.trim(), None)
-            .map_err(|reason| error("tracker_in", format!("{reason}; HOST:PORT or HOST:PORT,NAME")))?;
-        if name.as_deref() == Some("") {
-            return Err(error("tracker_in", "no name after the comma; HOST:PORT or HOST:PORT,NAME"));
-        }
-        Ok(Self { address, name })
-    }
-}
-
-impl fmt::Display for TrackerIn {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.address)?;
-        self.name.iter().try_for_each(|name| write!(f, ",{name}"))
-    }
+    /// The part of the field that is practised on.
+    pub practice: Practice,
 }
 
 /// Links to the robots.
@@ -300,6 +281,11 @@ impl TeamSettings {
                 acceleration: self.limits.acceleration.or(below.limits.acceleration),
             },
             tactics: self.tactics.or(below.tactics),
+            practice: PracticeSettings {
+                within: self.practice.within.or(below.practice.within),
+                without: self.practice.without.or(below.practice.without),
+                cameras: self.practice.cameras.or(below.practice.cameras),
+            },
         }
     }
 
@@ -341,6 +327,8 @@ impl TeamSettings {
             roll,
             limits: self.limits.checked()?,
             tactics: tactics.map_err(|description| error("tactics", description))?,
+            practice: Practice::parse(&self.practice)
+                .map_err(|(key, description)| error(key, description))?,
         })
     }
 }
@@ -446,6 +434,8 @@ mod tests {
         assert!(refused("referee_silence = 'wait'").to_string().contains("halt (after 2 s) or go-on"));
         assert!(refused("league = \"four-legged\"").to_string().contains("division-b"));
         assert!(refused("[[calibration]]\nrobot = 1\nkick = 9.0").to_string().contains("calibration.kick"));
+        assert!(refused("[practice]\nwithin = 'left'").to_string().contains("practice.within: `left`"));
+        assert!(refused("[practice]\ncameras = '16'").to_string().contains("practice.cameras"));
         assert!(refused("tracker_in = 'x,'").to_string().contains("HOST:PORT,NAME"));
         assert!(refused("[ball]\nroll = 9.0").to_string().contains("ball.roll"));
         for link in [

@@ -57,7 +57,6 @@ pub struct MatchRunner<'f> {
     log: Arc<ProgramLog>,
     /// Ends the match when it is set.
     stopped: &'f AtomicBool,
-    /// What just happened, to be played on from.
     moments: RecentMoments,
 }
 

@@ -68,6 +68,7 @@ pub(super) fn run(
         roll: config.roll,
         limits: config.limits,
         tactics: config.tactics,
+        practice: config.practice,
         learns: settings.learns,
         radio: RadioSettings { key, relay: link.relay(), ..by_default.radio },
         external: config.strategy.is_some(),

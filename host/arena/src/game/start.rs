@@ -12,8 +12,7 @@ use protocol::{RobotId, Who};
 use rules::Colour;
 
 use super::STEPS_A_TICK;
-use crate::Snapshot;
-use crate::snapshot::RobotState;
+use crate::snapshot::{RobotState, Snapshot};
 
 /// Ticks before the moment in which everything moves as recorded: 0.5 s, 30 frames of the cameras, after which
 /// trackers know positions and velocities.

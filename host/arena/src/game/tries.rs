@@ -19,7 +19,7 @@ pub struct TryOutcome {
     pub shots: PerTeam<u32>,
     /// Passes that arrived.
     pub passes: PerTeam<u32>,
-    /// The team whose robot touched the ball first: `blue` or `yellow`; none: nobody touched it.
+    /// The team whose robot touched the ball first: `blue` or `yellow`; none: no robot touched it.
     pub first_touch: Option<&'static str>,
     /// When that team lost the ball to the other one; none: it kept it, or play stopped first.
     pub lost_s: Option<f64>,

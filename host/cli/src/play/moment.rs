@@ -51,7 +51,7 @@ impl MomentArgs {
     /// Appends its flags to a command line.
     pub(super) fn describe(&self, text: &mut String) {
         let Some((file, at)) = self.from.as_ref().zip(self.at) else { return };
-        text.push_str(&format!(" --from {} --at {at}", quoted(&file.to_string_lossy())));
+        text.extend([" --from ", &quoted(&file.to_string_lossy()), " --at ", &at.to_string()]);
         if let Some(team) = self.opponents_from_log {
             text.extend([" --opponents-from-log ", team.label()]);
         }

@@ -177,9 +177,9 @@ fn a_moment_is_played_on_from_a_recording_and_from_a_match() {
         tab.eval("document.querySelector('#playon-tries').value = '3'").unwrap();
         tab.click("#playon-begin").unwrap();
         tab.wait("document.querySelector('[data-playon-over=true]')").unwrap();
-        let told = tab.eval("document.querySelector('[data-playon-over]').textContent").unwrap();
-        assert!(told.as_str().unwrap().starts_with("3 of 3 tries of 20 s from"), "{arguments:?}: {told}");
-        assert!(!told.as_str().unwrap().contains("ended:"), "{arguments:?}: {told}");
+        let text = tab.eval("document.querySelector('[data-playon-over]').textContent").unwrap();
+        assert!(text.as_str().unwrap().starts_with("3 of 3 tries of 20 s from"), "{arguments:?}: {text}");
+        assert!(!text.as_str().unwrap().contains("ended:"), "{arguments:?}: {text}");
         let rows = tab.eval("document.querySelectorAll('#playon-result tbody tr').length").unwrap();
         assert_eq!(rows.as_f64(), Some(3.0));
         no_errors(&mut tab);

@@ -45,7 +45,9 @@ pub fn start_from(
     }
     let blue_on_positive = reader.blue_on_positive();
     let Reader { frames, moment, .. } = reader;
-    let referee = moment.ok_or_else(|| RecordedError::NoStart(String::new())).map_err(in_file(file))?;
+    let referee = moment
+        .ok_or_else(|| RecordedError::NoStart(format!("no frame at {at_s} s")))
+        .map_err(in_file(file))?;
     Ok(GameStart { frames, referee, blue_on_positive, led })
 }
 
