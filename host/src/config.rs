@@ -14,6 +14,7 @@
 //! referee_source = "192.168.1.5"  # accept only this referee: address or identifier; left out: the strictest
 //! referee_silence = "halt"        # after 2 s without a referee; "go-on": its last command is kept
 //! tracker = "224.5.23.2:10010"
+//! tracker_in = "224.5.23.2:10010,TIGERs"  # another program's tracker in place of vision while it sends
 //! game_controller = "127.0.0.1:10008"   # the team's port; left out: no messages to the controller
 //! strategy = "python3 my_team.py" # program that gives the orders; left out: the program's own coach does
 //! tactics = "default"             # of the coach; none, all, or some of their names
@@ -30,6 +31,11 @@
 //! [ball]
 //! roll = 0.41                     # deceleration of a rolling ball, m/s²; left out: vision's
 //!
+//! [practice]                      # on a part of the field; left out: all of it
+//! within = "+x"                   # half +x, -x, +y or -y, or two corners X,Y,X,Y in mm
+//! without = "0,2000,1000,3000"    # a rectangle that is left out
+//! cameras = "2,3"                 # cameras that are left out
+//!
 //! [limits]                        # of our robots' drives; their own hold where they are stricter
 //! speed = 2.0                     # m/s; left out: their own
 //! acceleration = 2.5              # m/s²; left out: their own
@@ -38,6 +44,7 @@
 mod change;
 pub mod parameters;
 mod text;
+mod tracker_in;
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -48,15 +55,18 @@ use rules::{Colour, League};
 use serde::Deserialize;
 use ssl::net::{addresses, split_address};
 
+use crate::practice::Practice;
 use crate::radio::RobotNumbers;
 use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::Tactics;
 
+pub use crate::practice::PracticeSettings;
 pub use change::ParameterChange;
 pub(crate) use parameters::KICK_RANGE;
+pub use tracker_in::TrackerIn;
 
 /// Longest part of an error in a file of settings that is printed, characters.
-const MESSAGE_CHARS_MAX: usize = 300;
+const MESSAGE_CHARS_MAX: usize = 400;
 /// Longest part of its line that is printed, characters.
 const LINE_CHARS_MAX: usize = 80;
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
@@ -97,6 +107,8 @@ pub struct TeamSettings {
     /// Address to which tracker packets are sent.
     #[serde(default, deserialize_with = "text::destination")]
     pub tracker: Option<SocketAddr>,
+    /// Another program's tracker that is followed: see [`TrackerIn`].
+    pub tracker_in: Option<String>,
     /// The game controller's port for teams.
     #[serde(default, deserialize_with = "text::team_port")]
     pub game_controller: Option<SocketAddr>,
@@ -116,6 +128,9 @@ pub struct TeamSettings {
     /// Limits of our robots' motion.
     #[serde(default)]
     pub limits: DriveSettings,
+    /// The part of the field that is practised on.
+    #[serde(default)]
+    pub practice: PracticeSettings,
 }
 
 /// Motion of the ball on the field.
@@ -195,6 +210,8 @@ pub struct TeamConfig {
     pub referee_silence: OnSilence,
     /// Address to which tracker packets are sent.
     pub tracker: SocketAddr,
+    /// The tracker of another program that is followed while it sends; none: vision alone.
+    pub tracker_in: Option<TrackerIn>,
     /// The game controller's port for teams.
     pub game_controller: Option<SocketAddr>,
     /// Command of the strategy that gives the orders; none: the coach does.
@@ -209,6 +226,8 @@ pub struct TeamConfig {
     pub limits: DriveSettings,
     /// The tactics of the program's coach.
     pub tactics: Tactics,
+    /// The part of the field that is practised on.
+    pub practice: Practice,
 }
 
 /// Links to the robots.
@@ -273,6 +292,7 @@ impl TeamSettings {
             referee_source: self.referee_source.or(below.referee_source),
             referee_silence: self.referee_silence.or(below.referee_silence),
             tracker: self.tracker.or(below.tracker),
+            tracker_in: self.tracker_in.or(below.tracker_in),
             game_controller: self.game_controller.or(below.game_controller),
             strategy: self.strategy.or(below.strategy),
             calibration: if self.calibration.is_empty() { below.calibration } else { self.calibration },
@@ -283,6 +303,11 @@ impl TeamSettings {
                 acceleration: self.limits.acceleration.or(below.limits.acceleration),
             },
             tactics: self.tactics.or(below.tactics),
+            practice: PracticeSettings {
+                within: self.practice.within.or(below.practice.within),
+                without: self.practice.without.or(below.practice.without),
+                cameras: self.practice.cameras.or(below.practice.cameras),
+            },
         }
     }
 
@@ -317,6 +342,7 @@ impl TeamSettings {
             referee_source: self.referee_source.as_deref().map(pin).transpose()?,
             referee_silence: self.referee_silence.as_deref().map_or(Ok(OnSilence::default()), on_silence)?,
             tracker: self.tracker.unwrap_or_else(|| addresses::TRACKER.into()),
+            tracker_in: self.tracker_in.as_deref().map(TrackerIn::parse).transpose()?,
             game_controller: self.game_controller,
             strategy: self.strategy,
             kick,
@@ -324,6 +350,8 @@ impl TeamSettings {
             roll,
             limits: self.limits.checked()?,
             tactics: tactics.map_err(|description| error("tactics", description))?,
+            practice: Practice::parse(&self.practice)
+                .map_err(|(key, description)| error(key, description))?,
         })
     }
 }
@@ -446,6 +474,9 @@ mod tests {
         );
         let twice = "[[numbers]]\nrobot = 1\nradio = 3\n[[numbers]]\nrobot = 2\nradio = 3";
         assert!(refused(twice).to_string().contains("robots 1 and 2 are given the same"));
+        assert!(refused("[practice]\nwithin = 'left'").to_string().contains("practice.within: `left`"));
+        assert!(refused("[practice]\ncameras = '16'").to_string().contains("practice.cameras"));
+        assert!(refused("tracker_in = 'x,'").to_string().contains("HOST:PORT,NAME"));
         assert!(refused("[ball]\nroll = 9.0").to_string().contains("ball.roll"));
         for link in [
             "",

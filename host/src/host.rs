@@ -208,7 +208,7 @@ impl Host {
     }
 
     fn handle_vision(&mut self, now: Instant, bytes: &[u8]) -> InputVerdict {
-        let Ok(packet) = ssl::vision::WrapperPacket::decode(bytes) else {
+        let Ok(mut packet) = ssl::vision::WrapperPacket::decode(bytes) else {
             self.undecodable.vision += 1;
             return InputVerdict::Undecodable;
         };
@@ -216,6 +216,9 @@ impl Host {
         if let Some(data) = &packet.geometry {
             // A field that is refused is counted by the geometry; the previous field is kept.
             let _verdict = self.geometry.receive(data);
+        }
+        if let Some(frame) = packet.detection.as_mut().filter(|_| !self.settings.practice.is_all()) {
+            self.settings.practice.filter(frame);
         }
         let received = self.tracker.handle(&packet, now);
         let changes =
@@ -289,6 +292,8 @@ impl Host {
         self.planned = Some(now);
         let snapshot = self.tracker.snapshot();
         self.world = snapshot.at(now);
+        // One that rolled out of sight is not followed there.
+        self.world.ball = self.world.ball.take().filter(|ball| self.settings.practice.holds(ball.position));
         // Only a visible ball counts as moved: the place of a hidden one is an estimate.
         self.listener.tick(now, visible_place(now, self.world.ball));
         self.remember_ball(now);

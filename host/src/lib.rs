@@ -50,6 +50,7 @@ pub mod health_checks;
 mod hex;
 mod host;
 pub mod learned;
+pub mod practice;
 pub mod radio;
 pub mod record;
 pub mod referee;

@@ -66,6 +66,14 @@ pub struct RobotState {
     pub turning: f32,
 }
 
+impl RobotState {
+    /// Team and number; none where no robot can have the number.
+    pub fn who(&self) -> Option<Who> {
+        let colour = if self.blue { Colour::Blue } else { Colour::Yellow };
+        Some(Who { colour, id: RobotId::new(self.id)? })
+    }
+}
+
 /// Refusal of a snapshot.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SnapshotError {
@@ -105,6 +113,11 @@ impl Snapshot {
         Self { league: league.name().to_owned(), t: world.time(), ball, robots: robots.collect() }
     }
 
+    /// Its robots, as listed.
+    pub fn present(&self) -> impl Iterator<Item = Who> + '_ {
+        self.robots.iter().filter_map(RobotState::who)
+    }
+
     /// From the JSON of a file, within what a field of that league can hold.
     pub fn from_json(json: &str, league: League) -> Result<Self, SnapshotError> {
         let read: Self =
@@ -138,8 +151,7 @@ impl Snapshot {
     /// Puts ball and robots back; robots that are not on the field now stay off it.
     pub fn restore(&self, world: &mut World) {
         for state in &self.robots {
-            let Some(id) = RobotId::new(state.id) else { continue };
-            let who = Who { colour: if state.blue { Colour::Blue } else { Colour::Yellow }, id };
+            let Some(who) = state.who() else { continue };
             if !world.robot(who).is_some_and(|robot| robot.present) {
                 continue;
             }

@@ -2,6 +2,8 @@
 //! Displayed on the page at the clock's pace; `--headless` as fast as the machine plays it, printed line by
 //! line, or as one JSON object.
 
+mod moment;
+
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -11,7 +13,10 @@ use arena::CaseNames;
 use arena::cases::LibraryHandle;
 use arena::game::{self, Game, GameConfig, GameReport, MatchLog, StrategyReport, Watcher, Watchers};
 use clap::Args;
-use feed::{CaseExplanations, End, MatchObserver, MatchRunner, RunSettings, SharedLibrary};
+use feed::{
+    CaseExplanations, End, MatchObserver, MatchRunner, MomentSource, RecentMoments, RunSettings,
+    SharedLibrary,
+};
 use hil_sim::NativeBackend;
 use hil_sim::small_size::network::ControllerChoice;
 use hil_sim::small_size::worlds::WorldChoice;
@@ -32,6 +37,7 @@ use crate::output::{self, note, program_log, quoted};
 use crate::progress::Progress;
 use crate::robot_description::ensure_built_for;
 use crate::stop::{signal, stopped_by_hand};
+use moment::MomentArgs;
 
 /// Settings of a match.
 #[derive(Debug, Args)]
@@ -46,9 +52,9 @@ pub(crate) struct PlayArgs {
     /// Simulated seconds a second, with the page; its viewers can change it.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = match_speed, conflicts_with = "headless")]
     speed: f32,
-    /// Length of the match, simulated seconds.
-    #[arg(short, long, value_name = "SECONDS", default_value_t = 600.0, value_parser = match_seconds)]
-    duration: f64,
+    /// Length of the match, simulated seconds; 600 by default, 20 with --tries.
+    #[arg(short, long, value_name = "SECONDS", value_parser = match_seconds)]
+    duration: Option<f64>,
     /// Random seed.
     #[arg(short, long, default_value_t = 1)]
     seed: u64,
@@ -86,6 +92,8 @@ pub(crate) struct PlayArgs {
     /// or HOST:PORT where one listens (docs/commands.md).
     #[arg(long, value_name = "PATH|HOST:PORT", requires = "headless")]
     game_controller: Option<ControllerChoice>,
+    #[command(flatten)]
+    moment: MomentArgs,
     /// Record the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(short, long, value_name = "NAME")]
     record: Option<PathBuf>,
@@ -109,7 +117,7 @@ the match in order: recordings are closed, the summary is printed, and the exit 
 pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     ensure_built_for(args.robot.as_deref())?;
     check_recording(args.record.as_deref(), args.directory.library.as_deref().as_slice())?;
-    let mut config = GameConfig::new(args.league, args.seed, args.duration).between(args.blue, args.yellow);
+    let mut config = GameConfig::new(args.league, args.seed, args.duration()).between(args.blue, args.yellow);
     config.world = args.world;
     let settings = args.settings.choose()?.settings;
     for team in &mut config.teams {
@@ -124,6 +132,12 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     if let Some(library_handle) = &library_handle {
         config.names = CaseNames::new(library_handle.names());
         config.cases = Some(library_handle.lasting_base());
+    }
+    if let Some(start) = args.moment.start(args.league, args.duration())? {
+        config = config.starting_from(start.into());
+    }
+    if let Some(count) = args.moment.tries {
+        return moment::run_tries(&config, count, args.json);
     }
     let mut backend = NativeBackend::new(config.cases.unwrap_or_default());
     let mut recording = args.record.as_ref().map(|stem| record(stem, &config)).transpose()?;
@@ -166,10 +180,20 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     note!(
         "ended by {signal} after {:.2} s of {} s; what was played is above",
         report.duration_s,
-        args.duration
+        args.duration()
     );
     Ok(code)
 }
+
+impl PlayArgs {
+    fn duration(&self) -> f64 {
+        let default = if self.moment.tries.is_some() { moment::TRY_S } else { MATCH_S };
+        self.duration.unwrap_or(default)
+    }
+}
+
+/// Default length of a match, simulated s: the two halves of the league's.
+const MATCH_S: f64 = 600.0;
 
 /// At the clock's pace, with the page; it stays open when the match is over.
 fn on_page(
@@ -180,7 +204,9 @@ fn on_page(
 ) -> Result<ExitCode, Failure> {
     let settings = args.settings.choose()?.settings;
     let library = SharedLibrary::new(library_handle);
-    let explanations = CaseExplanations::sharing(library.clone(), settings);
+    let moments = RecentMoments::default();
+    let explanations =
+        CaseExplanations::sharing(library.clone(), settings).playing_on(MomentSource::Match(moments.clone()));
     let world =
         if args.world == WorldChoice::Nominal { String::new() } else { format!(", world {}", args.world) };
     let [blue, yellow] = [(args.blue, &args.blue_strategy), (args.yellow, &args.yellow_strategy)]
@@ -189,7 +215,7 @@ fn on_page(
     let page = args.page.open(title, false, Powers::Simulation, explanations)?;
     note!("playing  {}; Ctrl-C ends it", args.league.name());
     let (speed, recorded) = (args.speed, args.record.is_some());
-    let settings = RunSettings { speed, recorded, log: program_log(), stopped: stopped_by_hand() };
+    let settings = RunSettings { speed, recorded, log: program_log(), stopped: stopped_by_hand(), moments };
     let mut match_runner = MatchRunner::new(config, library, page, settings);
     loop {
         let (report, over) = match match_runner.play(&mut watched)? {
@@ -284,7 +310,8 @@ fn write_report(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> i
         writeln!(out, "{phase}: {}", block.description)?;
     }
     let mut text =
-        if args.duration == 600.0 { String::new() } else { format!(" --duration {}", args.duration) };
+        if args.duration() == MATCH_S { String::new() } else { format!(" --duration {}", args.duration()) };
+    args.moment.describe(&mut text);
     if args.league != League::DivisionB {
         text.extend([" --league ", args.league.name()]);
     }
@@ -334,7 +361,7 @@ struct Teller {
 
 impl Teller {
     fn new(args: &PlayArgs) -> Self {
-        let bar = args.json.then(|| Progress::of(args.duration as u64, "s"));
+        let bar = args.json.then(|| Progress::of(args.duration() as u64, "s"));
         Self { story: (!args.json).then(MatchLog::default), bar }
     }
 

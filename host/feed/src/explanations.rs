@@ -5,6 +5,7 @@ use arena::cases::{Chosen, LibraryHandle, explained_by};
 use casebase::RetrievalSettings;
 use page::WorkbenchRequest;
 
+use crate::MomentSource;
 use crate::workbench::{CaseWorkbench, SharedLibrary};
 
 /// A library, with settings of retrieval.
@@ -24,6 +25,13 @@ impl CaseExplanations {
     pub fn sharing(library: SharedLibrary, settings: RetrievalSettings) -> Self {
         let workbench = CaseWorkbench::new(library.clone(), settings.clone());
         Self { library, chosen: Chosen { settings, changed: Vec::new() }, workbench }
+    }
+
+    /// The same, and the page plays on from moments of this source.
+    #[must_use]
+    pub fn playing_on(mut self, moments: MomentSource) -> Self {
+        self.workbench.moments = Some(moments);
+        self
     }
 }
 

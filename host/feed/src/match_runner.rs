@@ -27,8 +27,8 @@ use self::kick_test::KickTests;
 use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
 use super::{
-    Composer, LedgerFeed, Moment, ParameterFeed, SCENE_EVERY_S, SnapshotRequest, Snapshots, change_of,
-    colour, test_of,
+    Composer, LedgerFeed, Moment, ParameterFeed, RecentMoments, SCENE_EVERY_S, SnapshotRequest, Snapshots,
+    change_of, colour, test_of,
 };
 use crate::workbench::SharedLibrary;
 
@@ -57,6 +57,7 @@ pub struct MatchRunner<'f> {
     log: Arc<ProgramLog>,
     /// Ends the match when it is set.
     stopped: &'f AtomicBool,
+    moments: RecentMoments,
 }
 
 /// Pace, log and end of a run.
@@ -69,6 +70,8 @@ pub struct RunSettings<'f> {
     pub log: Arc<ProgramLog>,
     /// Ends the match when it is set.
     pub stopped: &'f AtomicBool,
+    /// Gets what happens, for the page to play on from.
+    pub moments: RecentMoments,
 }
 
 /// State of the viewers' controls.
@@ -98,8 +101,18 @@ impl<'f> MatchRunner<'f> {
     /// A match of `config`, played at the clock's pace times `speed` until `stopped` is set; alarms go to
     /// `log`. One that is recorded cannot be restarted.
     pub fn new(config: GameConfig, library: SharedLibrary, page: Page, settings: RunSettings<'f>) -> Self {
-        let RunSettings { speed, recorded, log, stopped } = settings;
-        Self { config, library, page, speed, recorded, snapshots: Snapshots::default(), log, stopped }
+        let RunSettings { speed, recorded, log, stopped, moments } = settings;
+        Self {
+            config,
+            library,
+            page,
+            speed,
+            recorded,
+            snapshots: Snapshots::default(),
+            log,
+            stopped,
+            moments,
+        }
     }
 
     /// Plays until the match is over.
@@ -173,7 +186,9 @@ impl<'f> MatchRunner<'f> {
             ledger: LedgerFeed::new(library_handle.as_ref()),
             parameters: ParameterFeed::default(),
             t: 0.0,
+            moments: self.moments.clone(),
         };
+        self.moments.begin(&config);
         let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u64;
         let mut displayed = f64::NEG_INFINITY;
         let mut tests = KickTests::default();
@@ -437,13 +452,18 @@ struct Feed {
     ledger: LedgerFeed,
     parameters: ParameterFeed,
     t: f64,
+    moments: RecentMoments,
 }
 
 impl Watcher for Feed {
     fn vision(&mut self, _now: protocol::Instant, bytes: &[u8]) {
         self.composer.vision(bytes);
     }
-    fn referee(&mut self, _now: protocol::Instant, bytes: &[u8]) {
+    fn tick(&mut self, game: &Game<'_>) {
+        self.moments.tick(game);
+    }
+    fn referee(&mut self, now: protocol::Instant, bytes: &[u8]) {
+        self.moments.referee(now, bytes);
         self.composer.referee(bytes, self.t, true);
     }
 }

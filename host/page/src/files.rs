@@ -48,6 +48,7 @@ files! {
     "match.js": SCRIPT,
     "health.js": SCRIPT,
     "plots.js": SCRIPT,
+    "playon.js": SCRIPT,
     "plot.js": SCRIPT,
     "axes.js": SCRIPT,
     "course.js": SCRIPT,

@@ -4,6 +4,7 @@ import { byId, el, fill, say } from "./dom.js";
 import { handPart, showHand } from "./hand.js";
 import { ask } from "./link.js";
 import { remotePart, showRemote } from "./remote.js";
+import { playOnPart, showPlayOn } from "./playon.js";
 import { showSkills, skillPart } from "./skills.js";
 import { showSnapshots, snapshotPart } from "./snapshots.js";
 import { on, store } from "./store.js";
@@ -24,6 +25,7 @@ export function showControl() {
   fill(tab, `${shown} ${life}`, () => ({ simulation, halt, tune: halt, none, locked })[shown]());
   showHand();
   showRemote();
+  showPlayOn();
   if (shown !== "simulation") return;
   showSnapshots();
   showSkills();
@@ -36,7 +38,10 @@ export function showControl() {
   if (all.length !== select.options.length) select.replaceChildren(...all.map((name) => el("option", {}, name)));
 }
 
-const none = () => el("p", { class: "muted" }, "A recording cannot be changed. Everything else works as in a match: layers, explanations, plots, and files of a moment.");
+const none = () => [
+  el("p", { class: "muted" }, "A recording cannot be changed. Everything else works as in a match: layers, explanations, plots, and files of a moment."),
+  ...playOnPart(),
+];
 
 const locked = () => el("p", { class: "muted" }, "You are a viewer. To send requests, open the page at the address with ?token= that the program printed when it started.");
 
@@ -67,6 +72,7 @@ function simulation() {
     set(el("label", {}, "Seed"), seed, press("Restart", () => ({ ask: "restart", seed: Number(seed.value) }), { id: "restart" })),
     ...situations(press, set),
     ...handPart(),
+    ...playOnPart(),
     ...snapshotPart(),
     ...skillPart(),
     el("h2", {}, "Referee"),

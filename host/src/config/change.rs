@@ -154,6 +154,7 @@ impl TeamConfig {
         self.roll = settings.roll;
         self.limits = settings.limits;
         self.tactics = settings.tactics;
+        self.practice = settings.practice;
         self
     }
 
@@ -164,6 +165,7 @@ impl TeamConfig {
         settings.roll = self.roll;
         settings.limits = self.limits;
         settings.tactics = self.tactics;
+        settings.practice = self.practice;
     }
 }
 
@@ -207,6 +209,7 @@ mod tests {
             (r#"{"key":"limits.speed","value":2}"#, "[limits]\nspeed = 2.0"),
             (r#"{"key":"limits.acceleration","value":1.5}"#, "[limits]\nacceleration = 1.5"),
             (r#"{"key":"tactics","value":"none"}"#, "tactics = 'none'"),
+            (r#"{"key":"practice.within","value":"+x"}"#, "[practice]\nwithin = '+x'"),
             (
                 r#"{"key":"calibration.kick","robot":3,"value":1.06}"#,
                 "[[calibration]]\nrobot = 3\nkick = 1.06",

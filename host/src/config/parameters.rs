@@ -187,6 +187,15 @@ const fn optional(
     Parameter { left_out: Some(left_out), ..usual(key, meaning, value) }
 }
 
+const fn practice(
+    key: &'static str,
+    meaning: &'static str,
+    left_out: (&'static str, &'static str),
+    value: fn(&TeamConfig) -> Option<Value>,
+) -> Parameter {
+    Parameter { live: true, ..optional(key, meaning, left_out, value) }
+}
+
 /// Deceleration of a rolling ball; the range is that of [`crate::learned`].
 pub(super) const ROLL: Parameter = Parameter {
     key: "ball.roll",
@@ -251,7 +260,7 @@ pub(super) const ACCELERATION: Parameter = Parameter {
 };
 
 /// Every parameter, in the order of the file: those of no table first.
-pub const PARAMETERS: [Parameter; 21] = [
+pub const PARAMETERS: [Parameter; 25] = [
     usual("name", "as the game controller knows the team", |c| Some(text_of(&c.name))),
     usual("colour", "blue or yellow", |c| Some(text_of(&c.colour.label()))),
     usual("league", "ssl-2013, division-b or division-a", |c| Some(text_of(&c.league.name()))),
@@ -284,6 +293,12 @@ pub const PARAMETERS: [Parameter; 21] = [
     }),
     usual("tracker", "where our tracker's packets go", |c| Some(text_of(&c.tracker))),
     optional(
+        "tracker_in",
+        "another program's tracker in place of vision while it sends: HOST:PORT[,NAME]",
+        ("vision alone", "\"224.5.23.2:10010,TIGERs\""),
+        |c| c.tracker_in.as_ref().map(|tracker| text_of(tracker)),
+    ),
+    optional(
         "game_controller",
         "its port for teams",
         ("no messages to the controller", "\"127.0.0.1:10008\""),
@@ -306,6 +321,21 @@ pub const PARAMETERS: [Parameter; 21] = [
     ROLL,
     SPEED,
     ACCELERATION,
+    practice(
+        "practice.within",
+        "played in: half +x, -x, +y or -y, or X,Y,X,Y in mm; what is seen beyond is ignored",
+        ("all of the field", "\"+x\""),
+        |c| c.practice.words().within.map(Value::from),
+    ),
+    practice(
+        "practice.without",
+        "a rectangle that is left out, in the same words",
+        ("nothing", "\"0,2000,1000,3000\""),
+        |c| c.practice.words().without.map(Value::from),
+    ),
+    practice("practice.cameras", "cameras that are left out", ("none", "\"2,3\""), |c| {
+        c.practice.words().cameras.map(Value::from)
+    }),
     KICK,
     RADIO,
 ];
@@ -365,6 +395,6 @@ mod tests {
         let text = "keeper = 4\n[ball]\nroll = 0.41\n[[calibration]]\nrobot = 3\nkick = 1.06";
         assert_eq!(changed(text), [("keeper", None), ("ball.roll", None), ("calibration.kick", Some(3))]);
         let list = read(text).unwrap().parameters();
-        assert_eq!(list[16].value, Some(Value::from(0.41)));
+        assert_eq!(list[17].value, Some(Value::from(0.41)));
     }
 }

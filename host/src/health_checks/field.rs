@@ -107,7 +107,7 @@ impl fmt::Display for OtherField {
 }
 
 /// Compares the field that vision sent with that league's.
-pub(super) fn other_field(league: League, announced: &FieldSpec) -> Option<OtherField> {
+pub fn other_field(league: League, announced: &FieldSpec) -> Option<OtherField> {
     if fits(announced, league) {
         return None;
     }

@@ -45,7 +45,7 @@ use crate::Host;
 use crate::referee::Warning;
 use crate::tracking::senders::SecondVision;
 
-pub use field::{OtherField, TooManyRobots};
+pub use field::{OtherField, TooManyRobots, other_field};
 pub use finding::{Finding, Since};
 pub use port::VisionPort;
 pub use second_host::SecondHost;
@@ -233,7 +233,7 @@ impl HealthChecks {
         let mut found = Vec::new();
         let sees = host.last_camera_frame().is_some_and(|at| now.since(at) < FRAME_AGE_MAX);
         let reported =
-            host.announced_field().and_then(|reported| field::other_field(host.settings().league, reported));
+            host.announced_field().and_then(|reported| other_field(host.settings().league, reported));
         found.extend(reported.map(Fault::Field));
         found.extend(self.crowd.look(now, host, sees).map(Fault::Robots));
         found.extend(self.side.look(now, host, sees).map(Fault::Side));

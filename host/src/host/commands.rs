@@ -7,8 +7,8 @@ use protocol::{Duration, Instant, RobotId};
 use super::{Host, InputVerdict};
 use crate::external::{AnswerError, External, StrategyDrawing};
 use crate::radio::RadioSituation;
-use crate::strategy::Flip;
 use crate::strategy::view::ViewGame;
+use crate::strategy::{Flip, Order, OrderReason};
 
 impl Host {
     /// The newest view as a line for the strategy in another program, once; its answer is
@@ -48,7 +48,7 @@ impl Host {
             defending: game.defending,
             phase: game.phase,
             rule_role,
-            directive: self.calibrated(to, directive),
+            directive: self.settings.practice.bounded(self.calibrated(to, directive)),
         };
         if let Some(drill) = &self.drill {
             return drill
@@ -57,7 +57,17 @@ impl Host {
                 .collect();
         }
         let orders = self.orders.iter();
-        orders.map(|order| command(order.robot, order.role.rule_role(), order.task.directive(flip))).collect()
+        orders
+            .map(|order| command(order.robot, order.role.rule_role(), self.directive(order, flip)))
+            .collect()
+    }
+
+    /// Where a part of the field is practised on no case is played: the robot at the ball gets it.
+    fn directive(&self, order: &Order, flip: Flip) -> Directive {
+        let directive = order.task.directive(flip);
+        let plays = matches!(directive, Directive::Gameplay { .. })
+            && matches!(order.why, OrderReason::SoonestAtBall { .. } | OrderReason::PlaysCase { .. });
+        if plays && !self.settings.practice.is_all() { Directive::GetBall { face: None } } else { directive }
     }
 
     /// Orders of a strategy in another program are sent at once.

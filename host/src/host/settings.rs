@@ -9,6 +9,7 @@ use protocol::{RobotId, TeamId};
 use rules::{Colour, League};
 
 use crate::config::DriveSettings;
+use crate::practice::Practice;
 use crate::radio::RadioSettings;
 use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::cases_of;
@@ -44,6 +45,8 @@ pub struct HostSettings {
     pub tactics: Tactics,
     /// Limits of its robots' motion.
     pub limits: DriveSettings,
+    /// The part of the field that is practised on.
+    pub practice: Practice,
     /// Whether a strategy in another program gives orders ([`crate::external`]).
     pub external: bool,
     /// The case base of its robots, to retrieve from and to look up reported cases; none: the league's own.
@@ -70,6 +73,7 @@ impl HostSettings {
             radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(TeamId::of(us), epoch) },
             tactics: Tactics::default(),
             limits: DriveSettings::default(),
+            practice: Practice::default(),
             external: false,
             cases: None,
             expected: None,

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::case_table;
 use crate::HostSettings;
 use crate::config::{DriveSettings, KICK_RANGE};
+use crate::practice::Practice;
 use crate::radio::{RadioSettings, Relay, RobotNumbers};
 use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::cases_of;
@@ -101,6 +102,9 @@ pub struct HostHeader {
     /// Greatest acceleration of its robots, m/s²; none: their own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration_limit: Option<f32>,
+    /// The part of the field that it practised on.
+    #[serde(default, skip_serializing_if = "Practice::is_all")]
+    pub practice: Practice,
     /// Whether a strategy in another program gave orders.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub external: bool,
@@ -206,6 +210,7 @@ impl HostHeader {
             cases: None,
             speed_limit: None,
             acceleration_limit: None,
+            practice: Practice::default(),
             external: false,
             numbers: RobotId::all().filter_map(|id| Some((id, radio.numbers.given(id)?))).collect(),
         }
@@ -224,6 +229,7 @@ impl HostHeader {
             cases: settings.tactics.bridge.then(|| hash_of(settings.case_base())),
             speed_limit: settings.limits.speed,
             acceleration_limit: settings.limits.acceleration,
+            practice: settings.practice,
             external: settings.external,
             ..Self::new(who, &settings.kick, &settings.radio, began)
         }
@@ -256,6 +262,7 @@ impl HostHeader {
             radio: self.radio(key)?,
             tactics: self.tactics,
             limits: self.limits()?,
+            practice: self.practice,
             external: self.external,
             cases,
             expected: None,

@@ -23,10 +23,11 @@ use super::alarms::Alarms;
 use super::inbox::{Inbox, Mail, Source};
 use super::radio_alarms::RadioAlarms;
 use super::remote_thread::{self, RemoteAnswer};
+use super::tracker_input::TrackerInput;
 use super::tuning::{Tuning, keep_learned};
 use super::watch::Watch;
 use super::{Operator, Program, RunError, RunSettings, identity, port_for_teams, threads};
-use crate::config::{RobotLink, TeamConfig};
+use crate::config::{RobotLink, TeamConfig, TrackerIn};
 use crate::radio::RadioSettings;
 use crate::record::header::RecordingHeader;
 use crate::record::{BackgroundRecorder, Recorder};
@@ -71,6 +72,7 @@ pub(super) fn run(
         roll: config.roll,
         limits: config.limits,
         tactics: config.tactics,
+        practice: config.practice,
         learns: settings.learns,
         radio: RadioSettings { key, relay: link.relay(), numbers: config.numbers, ..by_default.radio },
         external: config.strategy.is_some(),
@@ -98,6 +100,7 @@ pub(super) fn run(
 
     let watch = Watch::new(link.advice());
     let (channels, threads) = Threads::start(config, link, strategy, settings.remote);
+    let own = own_uuid(config);
     let mut event_loop = EventLoop {
         host: Host::new(host_settings, protocol::Instant(0)),
         began: Instant::now(),
@@ -110,7 +113,8 @@ pub(super) fn run(
         senders: VisionSenders::new(config.colour),
         alarms: Alarms::new(&config.name),
         radio_alarms: RadioAlarms::default(),
-        publisher: publisher(config),
+        publisher: Publisher::new(&own, &config.name),
+        tracker: config.tracker_in.clone().map(|wanted| TrackerInput::new(wanted, own)),
         sender: NetSender::new(config.tracker, config.interface.as_deref()),
         counts: Counts::default(),
         lines: Vec::new(),
@@ -135,9 +139,10 @@ pub(super) fn run(
     event_loop.recording.map_err(RunError::NotWhole)
 }
 
-fn publisher(config: &TeamConfig) -> Publisher {
+/// Identifier of our tracker packets.
+fn own_uuid(config: &TeamConfig) -> String {
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    Publisher::new(&format!("onetwo-{}-{}", config.colour.label(), unix.as_secs()), &config.name)
+    format!("onetwo-{}-{}", config.colour.label(), unix.as_secs())
 }
 
 fn header(settings: &HostSettings, program: Program<'_>) -> RecordingHeader {
@@ -179,11 +184,15 @@ impl Threads {
         let (mail, out) = (Arc::new(Inbox::new()), Arc::new(Mutex::new(Outbox::default())));
         let end = Arc::new(AtomicBool::new(false));
         let by = config.interface.clone().map_or(Interfaces::All, |name| Interfaces::These(vec![name]));
+        let tracker_by = by.clone();
         let mut threads = vec![
             threads::receive(Source::Vision, config.vision, by.clone(), mail.clone(), end.clone()),
             threads::receive(Source::Referee, config.referee, by, mail.clone(), end.clone()),
             threads::carry(link, out.clone(), mail.clone(), end.clone()),
         ];
+        if let Some(TrackerIn { address, .. }) = config.tracker_in {
+            threads.push(threads::receive(Source::Tracker, address, tracker_by, mail.clone(), end.clone()));
+        }
         let (ask, asked): (_, Receiver<TeamPortRequest>) = mpsc::channel();
         if let Some(address) = config.game_controller {
             let who = (config.name.clone(), config.colour, config.keeper);
@@ -232,6 +241,7 @@ pub(super) struct EventLoop<'o> {
     pub(super) alarms: Alarms,
     radio_alarms: RadioAlarms,
     publisher: Publisher,
+    tracker: Option<TrackerInput>,
     sender: NetSender,
     counts: Counts,
     /// Lines for the operator that were not printed yet.
@@ -257,6 +267,7 @@ impl EventLoop<'_> {
                 checked = Instant::now();
                 let now = self.now();
                 self.watch.look(now, &self.host, config, &mut self.lines);
+                self.look_at_tracker(now);
                 self.look_at_alarms(now, config);
                 self.look_at_recording();
                 self.look_at_radio(now);
@@ -292,14 +303,16 @@ impl EventLoop<'_> {
             Mail::Vision(bytes, from) => {
                 self.counts.vision += 1;
                 let admission = self.senders.receive(now, from, &bytes, self.host.world());
-                if admission == Admission::Used
-                    && matches!(
-                        self.feed(now, Input::Vision(&bytes)),
-                        InputVerdict::Vision(VisionVerdict::Newest | VisionVerdict::Restarted)
-                    )
-                {
-                    self.publish(now);
-                }
+                let used = match &self.tracker {
+                    _ if admission != Admission::Used => None,
+                    Some(tracker) => tracker.vision(now, bytes),
+                    None => Some(bytes),
+                };
+                self.see(now, used);
+            }
+            Mail::Tracker(bytes) => {
+                let used = self.tracker.as_mut().and_then(|tracker| tracker.receive(now, &bytes));
+                self.see(now, used);
             }
             Mail::Referee(bytes, from) => {
                 self.counts.referee += 1;
@@ -324,6 +337,15 @@ impl EventLoop<'_> {
                 self.operator.refuse(reason);
             }
             Mail::Slow(line) => self.alarms.slow(now, line),
+        }
+    }
+
+    /// Feeds a camera frame, and publishes the field that follows.
+    fn see(&mut self, now: protocol::Instant, bytes: Option<Vec<u8>>) {
+        let Some(bytes) = bytes else { return };
+        let verdict = self.feed(now, Input::Vision(&bytes));
+        if matches!(verdict, InputVerdict::Vision(VisionVerdict::Newest | VisionVerdict::Restarted)) {
+            self.publish(now);
         }
     }
 
@@ -376,6 +398,16 @@ impl EventLoop<'_> {
         if let Some(recorder) = &mut self.recorder {
             recorder.received(now, MessageKind::Tracker2020, &bytes);
         }
+    }
+
+    /// Reports which source the field comes from, where that changes.
+    fn look_at_tracker(&mut self, now: protocol::Instant) {
+        let Some(tracker) = &mut self.tracker else { return };
+        if let Some(line) = tracker.look(now) {
+            self.operator.fault(now, line.clone());
+            self.lines.push(line);
+        }
+        self.watch.misses(now, tracker.missing(now));
     }
 
     /// Reports refused handshakes and frames between robots and host to the operator.
@@ -458,9 +490,12 @@ impl EventLoop<'_> {
         let (now, host) = (self.now(), &self.host);
         let seen = host.world().ours(host.settings().us).count();
         format!(
-            "{}, vision {} packets, {} of ours seen, {} received, {} frames to robots",
+            "{}, vision {} packets{}, {} of ours seen, {} received, {} frames to robots",
             host.game().phase,
             self.counts.vision,
+            self.tracker
+                .as_ref()
+                .map_or_else(String::new, |input| format!(", field by {}", input.source(now))),
             seen,
             host.radio().present(now).count(),
             self.counts.sent

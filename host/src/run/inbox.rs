@@ -37,6 +37,8 @@ pub(super) enum Source {
     Vision,
     Referee,
     Robots,
+    /// Another program's tracker.
+    Tracker,
 }
 
 impl Source {
@@ -46,6 +48,7 @@ impl Source {
             Self::Vision => "vision",
             Self::Referee => "referee",
             Self::Robots => "robots",
+            Self::Tracker => "tracker",
         }
     }
 }
@@ -55,6 +58,8 @@ impl Source {
 pub(super) enum Mail {
     /// A datagram of the vision, and its sender.
     Vision(Vec<u8>, SocketAddr),
+    /// A datagram of another program's tracker.
+    Tracker(Vec<u8>),
     /// A datagram of the referee, and its sender.
     Referee(Vec<u8>, SenderAddress),
     /// A frame of a robot.
@@ -145,6 +150,7 @@ struct Lanes {
     referee: Lane<(Vec<u8>, SenderAddress)>,
     robots: Lane<Packet>,
     orders: Lane<String>,
+    tracker: Lane<(Vec<u8>, ())>,
     vision: Lane<(Vec<u8>, SocketAddr)>,
     notes: Lane<Mail>,
     in_row: u32,
@@ -156,6 +162,7 @@ impl Lanes {
             referee: Lane::new(REFEREE_MAX),
             robots: Lane::new(ROBOTS_MAX),
             orders: Lane::new(ORDERS_MAX),
+            tracker: Lane::new(VISION_MAX),
             vision: Lane::new(VISION_MAX),
             notes: Lane::new(NOTES_MAX),
             in_row: 0,
@@ -165,6 +172,7 @@ impl Lanes {
     fn put(&mut self, mail: Mail) {
         match mail {
             Mail::Vision(bytes, from) => self.vision.push((bytes, from)),
+            Mail::Tracker(bytes) => self.tracker.push((bytes, ())),
             Mail::Referee(bytes, from) => self.referee.push((bytes, from)),
             Mail::Robot(packet) => self.robots.push(packet),
             Mail::Orders(line) => self.orders.push(line),
@@ -183,6 +191,9 @@ impl Lanes {
             }
             if let Some(line) = self.orders.take() {
                 return Some(Mail::Orders(line));
+            }
+            if let Some((bytes, ())) = self.tracker.take() {
+                return Some(Mail::Tracker(bytes));
             }
         }
         self.in_row = 0;

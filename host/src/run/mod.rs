@@ -16,6 +16,7 @@ mod radio_alarms;
 mod remote_thread;
 mod requests;
 mod threads;
+mod tracker_input;
 mod tuning;
 mod watch;
 

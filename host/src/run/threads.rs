@@ -72,6 +72,7 @@ pub(super) fn receive(
                 match receiver.receive(END_CHECK) {
                     Ok(Some(datagram)) => mail.put(match source {
                         Source::Vision => Mail::Vision(datagram.bytes.to_vec(), datagram.from),
+                        Source::Tracker => Mail::Tracker(datagram.bytes.to_vec()),
                         _ => Mail::Referee(datagram.bytes.to_vec(), datagram.from.into()),
                     }),
                     Ok(None) => {}

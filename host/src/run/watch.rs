@@ -23,6 +23,7 @@ pub(super) struct Watch {
     vision: Waiting,
     referee: Waiting,
     robots: Waiting,
+    tracker: Waiting,
     /// What is missing now, for the page.
     missing: Vec<String>,
     link_advice: String,
@@ -56,8 +57,8 @@ impl Waiting {
 
 impl Watch {
     pub(super) fn new(link_advice: String) -> Self {
-        let [vision, referee, robots] = <[Waiting; 3]>::default();
-        Self { vision, referee, robots, missing: Vec::new(), link_advice }
+        let [vision, referee, robots, tracker] = <[Waiting; 4]>::default();
+        Self { vision, referee, robots, tracker, missing: Vec::new(), link_advice }
     }
 
     /// A source is now received on `via`.
@@ -76,6 +77,11 @@ impl Watch {
         &self.vision.via
     }
 
+    /// This is missing too, once sources have had time to send.
+    pub(super) fn misses(&mut self, now: Instant, what: Option<String>) {
+        self.missing.extend(what.filter(|_| now.0 >= START_TIME.0));
+    }
+
     /// What is missing now, each in a sentence.
     pub(super) fn missing(&self) -> &[String] {
         &self.missing
@@ -86,6 +92,7 @@ impl Watch {
             Source::Vision => &mut self.vision,
             Source::Referee => &mut self.referee,
             Source::Robots => &mut self.robots,
+            Source::Tracker => &mut self.tracker,
         }
     }
 

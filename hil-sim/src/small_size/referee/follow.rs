@@ -6,7 +6,7 @@ use rules::state::Stage;
 
 use super::InternalReferee;
 use super::look::Sight;
-use super::remote::CiMatch;
+use super::remote::{CiMatch, RemoteMatch};
 use super::scene::COLOURS;
 use crate::small_size::{PhysicsEvent, World};
 
@@ -32,7 +32,7 @@ impl InternalReferee {
         self.next = remote.next();
         self.placement = remote.target();
         self.blue_on_positive = remote.blue_on_positive();
-        self.follow_accounts(game);
+        self.follow_accounts(game.game());
         if self.stage == Stage::SecondHalfPre && before != self.stage {
             self.carry_over(&sight.robots);
         }
@@ -51,8 +51,8 @@ impl InternalReferee {
         }
     }
 
-    fn follow_accounts(&mut self, game: &CiMatch) {
-        let remote = game.game();
+    /// Takes over the accounts of both teams, and the times left.
+    pub(super) fn follow_accounts(&mut self, remote: &RemoteMatch) {
         let Some(newest) = &remote.newest else { return };
         self.stage_left = newest.stage_time_left.unwrap_or(0);
         self.action_left = newest.current_action_time_remaining.unwrap_or(0);

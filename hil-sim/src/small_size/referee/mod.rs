@@ -33,6 +33,7 @@ mod observation;
 mod ready;
 mod reason;
 pub mod remote;
+mod resume;
 mod scene;
 mod settings;
 mod spots;

@@ -1,6 +1,8 @@
 //! `config`: configuration of a match: league, seed, length, and each side's robots; equal configurations
 //! play equally.
 
+use std::sync::Arc;
+
 use brain::{Approach, BrainConfig};
 use casebase::{CaseBase, RetrievalSettings};
 use hil_sim::AirSettings;
@@ -12,6 +14,7 @@ use host::strategy::{Tactics, Team};
 use protocol::{Duration, TeamId};
 use rules::{Colour, League};
 
+use super::GameStart;
 use crate::names::CaseNames;
 
 /// A match to be played.
@@ -38,6 +41,8 @@ pub struct GameConfig {
     pub cases: Option<CaseBase<'static>>,
     /// The league's game controller that runs the match; none: the internal referee.
     pub controller: Option<ControllerChoice>,
+    /// The moment of another match that it starts from; none: before the first kick-off.
+    pub start: Option<Arc<GameStart>>,
 }
 
 /// Configuration of one side of a match.
@@ -101,6 +106,7 @@ impl GameConfig {
             ),
             cases: None,
             controller: None,
+            start: None,
         }
     }
 }
@@ -120,6 +126,17 @@ impl GameConfig {
 }
 
 impl GameConfig {
+    /// The same from this moment on: robots, keepers and ends are its own.
+    pub fn starting_from(mut self, start: Arc<GameStart>) -> Self {
+        self.referee.blue_on_positive_half = start.blue_on_positive;
+        for setup in &mut self.teams {
+            self.referee.team_mut(setup.colour).keeper = start.referee.keeper(setup.colour);
+            setup.robots = start.robots(setup.colour).count() as u8;
+        }
+        self.start = Some(start);
+        self
+    }
+
     /// Strategy of a side's open play.
     pub fn plays(&self, colour: Colour) -> Team {
         self.teams.iter().find(|setup| setup.colour == colour).map_or(Team::Ours, |setup| setup.plays)

@@ -16,14 +16,18 @@ mod manual_referee;
 mod recording;
 mod report;
 mod side;
+mod start;
 mod story;
+mod tries;
 
 pub use config::{GameConfig, TeamSetup};
 pub use holds::Hold;
 pub use manual_referee::{ManualReferee, RefereeOrder};
 pub use recording::header;
 pub use report::{BlockedReport, GameReport, PerTeam, StrategyReport, TeamReport};
+pub use start::{GameStart, LEAD_IN_TICKS};
 pub use story::{MatchLog, sentence};
+pub use tries::{FirstShot, TryOutcome, tries};
 
 use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::compatibility::Profile;
@@ -78,6 +82,8 @@ pub struct Game<'a> {
     ledger: MatchLedger,
     /// Vision's packets reach no host.
     blind: bool,
+    /// Robots that are still led along the recording that it starts from.
+    on_track: Vec<Who>,
     config: GameConfig,
 }
 
@@ -118,12 +124,18 @@ impl<'a> Game<'a> {
         let model = WorldModel::of(league, &config.world).ok_or_else(|| {
             GameError::League(format!("{} has no wheels: `onetwo trial` plays it", league.name()))
         })?;
-        let referee = InternalReferee::new(config.referee.clone(), config.seed)
+        let mut referee = InternalReferee::new(config.referee.clone(), config.seed)
             .map_err(|_| GameError::League(format!("{} has no referee of its own", league.name())))?;
         let mut world = World::of_model(league, &model, config.seed);
         let mut teams = Vec::new();
         for setup in &config.teams {
             teams.push(Team::new(config, setup, &model.link, &mut world, backend)?);
+        }
+        let mut on_track = Vec::new();
+        if let Some(start) = &config.start {
+            start.place(0, &mut world);
+            referee.resume(&start.referee, world.ball.position);
+            on_track.extend(start.on_track());
         }
         world.add_bystanders(model.bystanders);
         let Ok(teams) = <[Team<'a>; 2]>::try_from(teams) else { unreachable!("two set-ups give two teams") };
@@ -143,6 +155,7 @@ impl<'a> Game<'a> {
             holds: Holds::default(),
             ledger: MatchLedger::default(),
             blind: false,
+            on_track,
             config: config.clone(),
         })
     }
@@ -245,10 +258,18 @@ impl<'a> Game<'a> {
     /// The same without the referee, as drills have one of their own.
     pub fn advance(&mut self, watcher: &mut dyn Watcher) -> Result<(), GameError> {
         let (tick, now) = (self.tick, self.now());
+        let led = match &self.config.start {
+            Some(start) => start.lead(tick, &mut self.world, &mut self.on_track),
+            None => Vec::new(),
+        };
         self.trace.small_size_tick(tick, &self.world);
         for team in &mut self.teams {
             team.receive(tick, now, watcher);
+            team.lead(&led);
             team.think(tick, now, &mut self.world, &mut self.trace)?;
+        }
+        for (who, order) in led {
+            self.world.order(who, order);
         }
         self.events.clear();
         for step in 0..STEPS_A_TICK {
@@ -283,7 +304,10 @@ impl<'a> Game<'a> {
             }
             return Ok(());
         }
-        self.referee.look(&self.world, &self.events);
+        // What led to the moment is judged already.
+        if self.config.start.is_none() || self.tick > LEAD_IN_TICKS {
+            self.referee.look(&self.world, &self.events);
+        }
         while let Some(packet) = self.referee.poll_packet() {
             self.announce(now, &packet, watcher);
         }

@@ -2,8 +2,8 @@
 //! of 10 ms and µs.
 
 use geometry::{Angle, GoalEnd, Pose};
-use hil_sim::small_size::World;
 use hil_sim::small_size::worlds::LinkModel;
+use hil_sim::small_size::{Order, World};
 use hil_sim::{Air, AirSettings, Backend, LinkLoss, Mcu, TraceHash};
 use host::external::{StrategyLink, StrategyStarter};
 use host::radio::{RadioSettings, Relay, To};
@@ -32,6 +32,8 @@ struct Player<'a> {
     booted: u32,
     epoch: u32,
     worst_instructions: u32,
+    /// It moves along a recording: its body obeys none of its orders.
+    led: bool,
 }
 
 impl<'a> Team<'a> {
@@ -45,7 +47,10 @@ impl<'a> Team<'a> {
     ) -> Result<Self, GameError> {
         let colour = setup.colour;
         let own = own_goal(config, colour);
-        let ids: Vec<RobotId> = numbers(setup.robots).collect();
+        let ids: Vec<RobotId> = match &config.start {
+            Some(start) => start.robots(colour).collect(),
+            None => numbers(setup.robots).collect(),
+        };
         let mut players = Vec::new();
         // As for the other team's kick-off: no robot in the circle. The keeper comes first.
         let places = kickoff_places(&config.league.field(), own, false);
@@ -56,7 +61,8 @@ impl<'a> Team<'a> {
             let brain = brain::BrainConfig { defending: own, ..setup.brain(config.league, *id) };
             let computer = backend.boot(&brain).map_err(|error| GameError::Computer { who, error })?;
             let epoch = brain.epoch;
-            players.push(Player { who, computer: Some(computer), booted: 0, epoch, worst_instructions: 0 });
+            let (computer, led) = (Some(computer), false);
+            players.push(Player { who, computer, booted: 0, epoch, worst_instructions: 0, led });
         }
         let settings = host_settings(config, colour);
         let seed = config.seed ^ colour as u64;
@@ -111,6 +117,13 @@ impl<'a> Team<'a> {
     pub(super) fn deadline(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
         if self.host.poll_timeout().is_some_and(|due| due <= now) {
             self.feed(tick, now, Input::Timeout, watcher);
+        }
+    }
+
+    /// Those of its robots move along a recording from now on, and no others.
+    pub(super) fn lead(&mut self, led: &[(Who, Order)]) {
+        for player in &mut self.players {
+            player.led = led.iter().any(|(who, _)| *who == player.who);
         }
     }
 
@@ -192,7 +205,9 @@ impl<'a> Team<'a> {
             player.worst_instructions = player.worst_instructions.max(reply.instructions);
             if let Some(order) = reply.actuators {
                 trace.small_size_order(who, &order);
-                world.command(who, &order);
+                if !player.led {
+                    world.command(who, &order);
+                }
             }
             for packet in &reply.packets {
                 air.send(tick, who.id, packet);

@@ -15,7 +15,9 @@ use std::process::ExitCode;
 use arena::cases::LibraryHandle;
 use clap::Args;
 use hil_sim::small_size::Parameters;
-use host::config::{BallSettings, Calibration, DriveSettings, RobotLink, TeamConfig, TeamSettings};
+use host::config::{
+    BallSettings, Calibration, DriveSettings, PracticeSettings, RobotLink, TeamConfig, TeamSettings,
+};
 use host::run::{CONFIG_LEN_MAX, OutputFiles, Program, RunSettings, VirtualRobots};
 use protocol::RobotId;
 use ssl::net::addresses;
@@ -97,6 +99,11 @@ pub(crate) struct ControlArgs {
     /// Where our tracker's packets go: 224.5.23.2:10010.
     #[arg(long, value_name = "HOST:PORT", value_parser = destination)]
     tracker: Option<SocketAddr>,
+    /// Another program's tracker that takes the place of vision while it sends, such as
+    /// 224.5.23.2:10010,TIGERs: address, and name or identifier of the source (the first that sends, without
+    /// one). Where it is silent for 0.05 s vision is tracked, and 0.5 s after it is back it leads again.
+    #[arg(long, value_name = "HOST:PORT[,NAME]")]
+    tracker_in: Option<String>,
     /// The game controller's port for teams, such as 127.0.0.1:10008. If omitted, the goalkeeper is not
     /// announced to the game controller.
     #[arg(long, value_name = "HOST[:PORT]", value_parser = team_port)]
@@ -271,6 +278,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         referee_source: args.referee_source.clone(),
         referee_silence: args.referee_silence.clone(),
         tracker: args.tracker,
+        tracker_in: args.tracker_in.clone(),
         game_controller: args.game_controller,
         strategy: args.strategy.clone(),
         calibration: args.kicks.clone(),
@@ -278,6 +286,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         ball: BallSettings::default(),
         limits: DriveSettings::default(),
         tactics: None,
+        practice: PracticeSettings::default(),
     };
     let settings = flags.over(file);
     let reported = settings.vision.is_some();

@@ -4,10 +4,10 @@ use std::process::ExitCode;
 
 use arena::cases::LibraryHandle;
 use casebase::RetrievalSettings;
-use feed::CaseExplanations;
 use feed::recording::{
     Beside, PlaySettings, Projector, RecordedError, Shown, TraceFile, begins_as_trace, comparable, in_file,
 };
+use feed::{CaseExplanations, MomentSource};
 use page::{Page, Powers};
 use rules::League;
 
@@ -67,6 +67,7 @@ fn show_log(args: &ReplayArgs) -> Result<(Page, Shown, &'static str), Failure> {
 fn open(args: &ReplayArgs, league: League) -> Result<(Page, Option<LibraryHandle>), Failure> {
     let library = library::of_league(league, args.directory.library.as_deref())?;
     let name = args.file.file_name().map(|name| name.to_string_lossy().into_owned());
-    let explanations = CaseExplanations::new(library, RetrievalSettings::default());
+    let explanations = CaseExplanations::new(library, RetrievalSettings::default())
+        .playing_on(MomentSource::Recording(args.file.clone(), league));
     Ok((args.page.open(name.unwrap_or_default(), true, Powers::None, explanations)?, library))
 }

@@ -163,3 +163,25 @@ fn a_robot_driven_by_hand_stands_when_the_page_is_silent_and_in_a_halt() {
     tab.wait(&format!("{robot}.mind.why !== 'a robot is driven by hand'")).unwrap();
     no_errors(&mut tab);
 }
+
+#[test]
+fn a_moment_is_played_on_from_a_recording_and_from_a_match() {
+    let log = concat!(env!("CARGO_MANIFEST_DIR"), "/../../protocol/ssl/tests/data/grsim_divB_22s.log.gz");
+    let mut browser = Browser::start().unwrap();
+    for arguments in [&["replay", log, "--watch"][..], &["play", "--seed", "2"][..]] {
+        let program = Program::start(&[arguments, &["--listen", "127.0.0.1:0"]].concat());
+        let mut tab = open(&mut browser, &program, "control");
+        // Half a second of the moment's past is needed.
+        tab.wait("onetwo.store.latest.t > 2").unwrap();
+        tab.wait("document.querySelector('#playon-tries')").unwrap();
+        tab.eval("document.querySelector('#playon-tries').value = '3'").unwrap();
+        tab.click("#playon-begin").unwrap();
+        tab.wait("document.querySelector('[data-playon-over=true]')").unwrap();
+        let text = tab.eval("document.querySelector('[data-playon-over]').textContent").unwrap();
+        assert!(text.as_str().unwrap().starts_with("3 of 3 tries of 20 s from"), "{arguments:?}: {text}");
+        assert!(!text.as_str().unwrap().contains("ended:"), "{arguments:?}: {text}");
+        let rows = tab.eval("document.querySelectorAll('#playon-result tbody tr').length").unwrap();
+        assert_eq!(rows.as_f64(), Some(3.0));
+        no_errors(&mut tab);
+    }
+}

@@ -87,6 +87,9 @@ pub enum RecordedError {
         /// Place where the recording is cut or damaged, if it is.
         damage: Option<String>,
     },
+    /// Why no match can start from that moment, and what to do.
+    #[error("{0}")]
+    NoStart(String),
     /// Why it cannot be compared with another trace, and what to do.
     #[error("{0}")]
     Unlike(String),

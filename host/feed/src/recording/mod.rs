@@ -14,6 +14,7 @@ mod packets;
 mod projector;
 mod rows;
 mod sheet;
+mod start;
 mod trace_file;
 mod unlike;
 
@@ -30,6 +31,7 @@ pub use packets::{LeaguePacket, LeaguePackets};
 pub use projector::{Projector, Shown};
 pub use rows::{FieldSource, Row, Rows, columns};
 pub use sheet::Sheet;
+pub use start::start_from;
 pub use trace_file::{TraceFile, begins_as_trace, hosts_of, record_label};
 
 pub use crate::referee_event::{RefereeEvent, RefereeEventFinder, is_meant};

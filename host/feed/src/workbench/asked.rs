@@ -8,6 +8,8 @@ use casebase::Symmetry;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
+use super::play_on::PlayOnPlan;
+
 /// A request. Texts are those of case files.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
@@ -88,6 +90,13 @@ pub(super) enum Asked {
     },
     /// No further tries.
     StopTries {},
+    /// A moment played on with different seeds; without a plan: how the last tries went.
+    PlayOn {
+        #[serde(default)]
+        plan: Option<PlayOnPlan>,
+    },
+    /// No further ones.
+    StopPlayOn {},
     /// Writes the file; `over`: the text that it replaces.
     Save {
         name: String,
@@ -105,8 +114,10 @@ impl Asked {
             | Self::Save { .. }
             | Self::Check { .. }
             | Self::Refuse { .. }
-            | Self::StopTries {} => true,
+            | Self::StopTries {}
+            | Self::StopPlayOn {} => true,
             Self::Tries { plan } => plan.is_some(),
+            Self::PlayOn { plan } => plan.is_some(),
             _ => false,
         }
     }
@@ -126,7 +137,7 @@ pub(super) struct TriesPlan {
 /// Most attempts of a rehearsal.
 const TRIALS_MAX: u32 = 500;
 
-fn trials<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+pub(super) fn trials<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
     let trials = u32::deserialize(deserializer)?;
     if (1..=TRIALS_MAX).contains(&trials) {
         return Ok(trials);

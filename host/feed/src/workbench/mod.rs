@@ -7,6 +7,7 @@
 mod asked;
 mod count;
 mod learned;
+mod play_on;
 mod rehearsal;
 mod save;
 mod shared_library;
@@ -26,8 +27,11 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use study::skills::{Skill, SkillPlan};
 
+use crate::MomentSource;
+
 use asked::{Asked, TriesPlan};
 use count::Problems;
+use play_on::PlayOn;
 use rehearsal::{Rehearsal, RehearsalOrder};
 use skill_tests::SkillTests;
 
@@ -40,10 +44,13 @@ const DRAWN_PROBLEMS: u64 = 20_000;
 pub(crate) struct CaseWorkbench {
     library: SharedLibrary,
     settings: RetrievalSettings,
+    /// Where moments to play on from are found; none where there are none.
+    pub(crate) moments: Option<MomentSource>,
     /// The files, read when they are first asked for, and after every saving.
     bench: RwLock<Option<Arc<Workbench>>>,
     rehearsal: Mutex<Option<Arc<Rehearsal>>>,
     tries: Mutex<Option<Arc<SkillTests>>>,
+    play_on: Mutex<Option<Arc<PlayOn>>>,
 }
 
 impl CaseWorkbench {
@@ -52,9 +59,11 @@ impl CaseWorkbench {
         Self {
             library,
             settings,
+            moments: None,
             bench: RwLock::default(),
             rehearsal: Mutex::default(),
             tries: Mutex::default(),
+            play_on: Mutex::default(),
         }
     }
 
@@ -137,6 +146,21 @@ impl CaseWorkbench {
                 }
                 self.tried()
             }
+            Asked::PlayOn { plan } => {
+                if let Some(plan) = plan {
+                    let source = self.moments.clone().ok_or(NO_MOMENT)?;
+                    if let Some(old) = self.play_on().replace(PlayOn::begin(source, plan)?) {
+                        old.stop();
+                    }
+                }
+                self.played_on()
+            }
+            Asked::StopPlayOn {} => {
+                if let Some(played) = &*self.play_on() {
+                    played.stop();
+                }
+                self.played_on()
+            }
             Asked::Save { name, text, over } => {
                 let directory = self.library.directory().ok_or(NO_DIRECTORY)?;
                 let sheet = self.bench()?.sheet(&name, &text);
@@ -155,6 +179,18 @@ impl CaseWorkbench {
 
     fn tries(&self) -> std::sync::MutexGuard<'_, Option<Arc<SkillTests>>> {
         self.tries.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn play_on(&self) -> std::sync::MutexGuard<'_, Option<Arc<PlayOn>>> {
+        self.play_on.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn played_on(&self) -> Value {
+        let from = self.moments.as_ref().map(|source| match source {
+            MomentSource::Recording(..) => "recording",
+            MomentSource::Match(_) => "match",
+        });
+        json!({ "from": from, "report": self.play_on().as_ref().map(|played| played.report()) })
     }
 
     /// The tries that are asked for, in the league of the cases.
@@ -305,6 +341,7 @@ fn refused(findings: &[Finding]) -> String {
 const NAME_FORM: &str = "a case is named region/name, both of letters, digits, - and _";
 const NO_DIRECTORY: &str = "the cases of this program are built in: to save, start it with --library DIR, a copy of a league's directory";
 const NO_REHEARSAL: &str = "nothing was rehearsed yet";
+const NO_MOMENT: &str = "moments are played on from in onetwo play and onetwo replay --watch";
 const NO_TOKEN: &str = "this page is open to the network: to rehearse, to try skills and to save, open it by the address with ?token=";
 const REAL_FIELD: &str = "beside a real field nothing is rehearsed and no skill tried: the host needs the machine; use onetwo play";
 

@@ -125,6 +125,11 @@ impl RemoteMatch {
         self.stage
     }
 
+    /// The keeper of that team.
+    pub fn keeper(&self, team: Colour) -> RobotId {
+        self.accounts.of(team).keeper
+    }
+
     /// True where nothing was received for [`SILENCE`], or ever.
     pub fn is_silent(&self, now: Instant) -> bool {
         self.newest.is_none() || now.since(self.received) > SILENCE
