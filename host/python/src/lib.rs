@@ -10,6 +10,7 @@ mod computers;
 mod driver;
 mod episode;
 mod library;
+mod picture;
 mod saved;
 mod settings;
 mod simulator;

@@ -3,11 +3,22 @@ along the length."""
 
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import Any, final
+from typing import Any, Protocol, final
 
-from typing_extensions import Buffer
+import typing_extensions
+
+class _Array(Protocol):
+    """An array of NumPy, whose own types say only from Python 3.12 on that it is a buffer."""
+
+    @property
+    def __array_interface__(self) -> dict[str, Any]: ...
+
+Buffer = typing_extensions.Buffer | _Array
 
 VERSION: str
+
+SYMMETRIES: list[str]
+"""Names of the symmetries, by the id of a stored case modulo 4."""
 
 Problem = str | Mapping[str, Any]
 """A situation, as a line of `onetwo cases retrieve` or as the same object: {"ball": [x, y], "defending": "yellow" or
@@ -130,6 +141,14 @@ class Simulator:
         """The true state: time_s; ball with position (x, y, height, m) and velocity (m/s); own and opponents, lists of
         robots with position (m), heading (rad), velocity (m/s), turning (rad/s) and ball_contact; under the referee score
         (own, opponents) and in_play."""
+    def pixels(self, width: int) -> tuple[bytes, int, int]:
+        """The drawn field `width` pixels wide, 64 to 4096: red, green and blue of each pixel row by row from the top, width
+        and height, both even. Own robots are blue, those that `actions` move framed in black, opponents grey; a white line
+        is a robot's front."""
+    def svg(self, width: int = 960) -> str:
+        """The drawn field as SVG."""
+    def _repr_svg_(self) -> str:
+        """The picture of a notebook's cell."""
     def place_ball(self, x: float, y: float, vx: float = 0.0, vy: float = 0.0) -> None:
         """Places the ball on the ground (m), rolling with that velocity (m/s)."""
     def place_robot(self, index: int, x: float, y: float, heading: float = 0.0, *, opponent: bool = False) -> None:
@@ -194,9 +213,45 @@ class VectorSimulator:
         (float32) and numbers of `ENDS` (uint8) of all. Raises ValueError as `Simulator.step` does."""
     def times_s(self) -> list[float]:
         """Simulated time of each episode, s."""
+    def pixels(self, index: int, width: int) -> tuple[bytes, int, int]:
+        """The drawn field of an episode, as `Simulator.pixels`."""
     def ended(self) -> list[bool]:
         """Whether each episode has ended."""
     def save(self) -> bytes:
         """The state of all episodes, as `Simulator.save`."""
     def restore(self, state: bytes) -> None:
         """As `Simulator.restore`, for as many episodes."""
+
+# What `onetwo.cases` is made of.
+def _rank(
+    library: Library,
+    columns: tuple[Any, ...],
+    k: int,
+    weights: dict[str, float],
+    local: dict[str, Any],
+    unknown: str,
+    settings: Settings | None,
+    threads: int,
+    into: list[Any],
+) -> None: ...
+def _retrieve(library: Library, columns: tuple[Any, ...], settings: Settings | None, threads: int, into: Any) -> None: ...
+def _coverage(
+    library: Library, columns: tuple[Any, ...] | None, count: int, seed: int, settings: Settings | None, threads: int
+) -> dict[str, Any]: ...
+def _draft(library: Library, problem: Problem) -> dict[str, Any]: ...
+def _files(library: Library) -> dict[str, str]: ...
+def _learn(
+    library: Library,
+    budget: int,
+    seed: int,
+    kinds: list[str],
+    profile: str,
+    error_rate: float,
+    dry_run: bool,
+    threads: int,
+) -> tuple[dict[str, Any], dict[str, str]]: ...
+
+# What `pickle` calls.
+def _library(league: str, directory: str | PathLike[str] | None) -> Library: ...
+def _simulator(state: bytes) -> Simulator: ...
+def _vector(state: bytes, threads: int) -> VectorSimulator: ...
