@@ -52,6 +52,8 @@ class TaskEnv(gymnasium.Env[Floats, Floats]):
     """
 
     metadata = {"render_modes": RENDER_MODES, "render_fps": 40}
+    action_space: spaces.Box[np.float32]
+    observation_space: spaces.Box[np.float32]
 
     def __init__(
         self,
@@ -150,6 +152,8 @@ class TaskVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     """
 
     metadata = {"render_modes": ["rgb_array"], "autoreset_mode": AutoresetMode.NEXT_STEP}
+    single_action_space: spaces.Box[np.float32]
+    single_observation_space: spaces.Box[np.float32]
 
     def __init__(
         self,
