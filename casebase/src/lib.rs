@@ -33,6 +33,7 @@ pub mod settings;
 mod stored;
 mod symmetry;
 pub mod table;
+mod terms;
 #[cfg(test)]
 mod testing;
 
@@ -59,3 +60,4 @@ pub use settings::{
 };
 pub use symmetry::Symmetry;
 pub use table::{CaseBase, TableError};
+pub use terms::{Terms, terms};

@@ -144,7 +144,21 @@ const MANIFEST: &str = "--manifest-path host/python/Cargo.toml";
 const NAMES: [&str; 2] = ["python3", "python"];
 /// What builds and tests the package: the build tool and the checkers by version, so that a run can be
 /// repeated.
-const NEEDED: [&str; 4] = ["maturin==1.16.0", "gymnasium==1.4.0", "pettingzoo==1.27.0", "numpy>=1.26"];
+const NEEDED: [&str; 11] = [
+    "maturin==1.16.0",
+    "gymnasium==1.4.0",
+    "pettingzoo==1.27.0",
+    "numpy>=1.26",
+    // A window, and the videos of Gymnasium's wrapper.
+    "pygame==2.6.1",
+    "moviepy==2.2.1",
+    // Tables, types, and the notebook in docs.
+    "pandas==3.1.1",
+    "mypy==2.4.1",
+    "nbclient==0.11.0",
+    "nbformat==5.11.1",
+    "ipykernel==7.4.0",
+];
 
 #[cfg(test)]
 mod tests {

@@ -19,6 +19,7 @@ import robosim
 import onetwo
 import onetwo.env
 
+Actions = list[list[float]]
 ROUNDS = 20
 STEPS = 400
 PERIOD_MS = 25
@@ -27,13 +28,13 @@ SMALL_FIELD = 1  # rSim's number for 9 x 6 m
 HALF_LENGTH, HALF_WIDTH = 4.5, 3.0  # m
 
 
-def drawn(robots, count):
+def drawn(robots: int, count: int) -> Actions:
     """Actions of one team: forward, left, turn, kick, dribbler for each robot."""
     draw = random.Random(1)
     return [[draw.uniform(-1, 1) for _ in range(5 * robots)] for _ in range(count)]
 
 
-def ours(robots, actions):
+def ours(robots: int, actions: Actions) -> None:
     """`Simulator.step` with orders for both teams, and the observation."""
     simulator = onetwo.Simulator(robots, robots, period_ms=PERIOD_MS, time_limit_s=1e9)
     prepared = [array("f", action) for action in actions]
@@ -46,7 +47,7 @@ def ours(robots, actions):
             simulator.reset(seed)
 
 
-def environment(robots, actions):
+def environment(robots: int, actions: Actions) -> None:
     """`ScoreEnv.step`: opponents stand."""
     env = onetwo.env.ScoreEnv(robots, robots, period_ms=PERIOD_MS, time_limit_s=1e9)
     env.reset(seed=1)
@@ -57,11 +58,11 @@ def environment(robots, actions):
             env.reset()
 
 
-def placed(robots, side):
+def placed(robots: int, side: int) -> Actions:
     return [[side * (0.5 + 0.5 * robot), 0.6 * robot - 1.5, 0.0 if side < 0 else 180.0] for robot in range(robots)]
 
 
-def rsim(robots, actions):
+def rsim(robots: int, actions: Actions) -> None:
     """rSim's `step` with orders for both teams, and `get_state`."""
     start = ([0.0, 0.0, 0.0, 0.0], placed(robots, -1), placed(robots, 1))
     simulator = robosim.SSL(SMALL_FIELD, robots, robots, PERIOD_MS, *start)
@@ -80,12 +81,12 @@ def rsim(robots, actions):
             simulator.reset(*start)
 
 
-def main():
+def main() -> None:
     numbers = [argument for argument in sys.argv[1:] if argument.isdigit()]
     robots = int(numbers[0]) if numbers else 3
     actions = drawn(robots, STEPS)
     sides = {"simulator": ours, "environment": environment, "rsim": rsim}
-    speeds = {name: [] for name in sides}
+    speeds: dict[str, list[float]] = {name: [] for name in sides}
     for side in sides.values():
         side(robots, actions)
     for _ in range(ROUNDS):

@@ -3,10 +3,14 @@
 `python host/python/examples/speed.py [TASK]`: medians of rounds that take turns, wall time.
 """
 
+from __future__ import annotations
+
 import copy
 import statistics
 import sys
 import time
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -18,12 +22,12 @@ STEPS = 100
 COPIES = 256
 
 
-def single(task):
+def single(task: str) -> Callable[[], int]:
     """`TaskEnv.step` with drawn actions."""
     env = TaskEnv(task=task)
     actions = np.random.default_rng(1).uniform(-1, 1, (STEPS * 20, *env.action_space.shape)).astype(np.float32)
 
-    def run():
+    def run() -> int:
         env.reset(seed=1)
         for action in actions:
             _, _, terminated, truncated, _ = env.step(action)
@@ -34,12 +38,12 @@ def single(task):
     return run
 
 
-def vector(task, threads):
+def vector(task: str, threads: int) -> Callable[[], int]:
     """`TaskVectorEnv.step` of many copies."""
     envs = TaskVectorEnv(COPIES, threads=threads, task=task)
-    actions = np.random.default_rng(1).uniform(-1, 1, (STEPS, *envs.action_space.shape)).astype(np.float32)
+    actions = np.random.default_rng(1).uniform(-1, 1, (STEPS, COPIES, *envs.single_action_space.shape)).astype(np.float32)
 
-    def run():
+    def run() -> int:
         envs.reset(seed=1)
         for action in actions:
             envs.step(action)
@@ -48,7 +52,7 @@ def vector(task, threads):
     return run
 
 
-def microseconds(call, times=200):
+def microseconds(call: Callable[[], Any], times: int = 200) -> float:
     """Median time of a call, µs."""
     found = []
     for _ in range(times):
@@ -58,10 +62,10 @@ def microseconds(call, times=200):
     return statistics.median(found)
 
 
-def main():
+def main() -> None:
     task = sys.argv[1] if len(sys.argv) > 1 else "score"
     sides = {"single": single(task), "vector, 1 thread": vector(task, 1), "vector, 2 threads": vector(task, 2)}
-    rates = {name: [] for name in sides}
+    rates: dict[str, list[float]] = {name: [] for name in sides}
     for _ in range(ROUNDS):
         for name, run in sides.items():
             began = time.perf_counter()

@@ -4,6 +4,8 @@
 The node with the best return so far is expanded next; the plan found is then played in an environment of its own.
 """
 
+from __future__ import annotations
+
 import heapq
 import itertools
 import sys
@@ -11,13 +13,14 @@ import time
 
 import onetwo
 
+Plan = list[list[float]]
 NODES = 1_000
 PERIODS = 8  # of 25 ms: an edge
 # Forward, left, turn, kick, dribbler: approach, turn either way with the ball, shoot, shoot on the move.
-ORDERS = [[0.3, 0, 0, 0, 1], [0.05, 0, 0.15, 0, 1], [0.05, 0, -0.15, 0, 1], [0.1, 0, 0, 0.9, 0], [0.4, 0.1, 0, 0.9, 0]]
+ORDERS: Plan = [[0.3, 0, 0, 0, 1], [0.05, 0, 0.15, 0, 1], [0.05, 0, -0.15, 0, 1], [0.1, 0, 0, 0.9, 0], [0.4, 0.1, 0, 0.9, 0]]
 
 
-def play(simulator, order):
+def play(simulator: onetwo.Simulator, order: list[float]) -> tuple[float, str | None]:
     """The sum of rewards of an edge, and the end of the episode if it came."""
     total, end = 0.0, None
     for _ in range(PERIODS):
@@ -28,11 +31,11 @@ def play(simulator, order):
     return total, end
 
 
-def search(simulator, nodes):
+def search(simulator: onetwo.Simulator, nodes: int) -> tuple[float, Plan]:
     """The best return within so many nodes, and the orders that lead to it."""
     count = itertools.count()
-    queue = [(0.0, next(count), [], simulator.save())]
-    best = (0.0, [])
+    queue: list[tuple[float, int, Plan, bytes]] = [(0.0, next(count), [], simulator.save())]
+    best: tuple[float, Plan] = (0.0, [])
     made = 0
     while queue and made < nodes:
         loss, _, plan, state = heapq.heappop(queue)
@@ -47,7 +50,7 @@ def search(simulator, nodes):
     return best
 
 
-def main():
+def main() -> None:
     seed = int(sys.argv[1]) if len(sys.argv) > 1 else 1
     simulator = onetwo.Simulator(task="shoot-at-keeper", seed=seed)
     began = time.perf_counter()

@@ -21,9 +21,14 @@ arguments! {
     own: optional_whole -> Option<usize>;
     agents: optional_whole -> Option<usize>;
     count: whole -> usize;
+    k: whole -> usize;
+    samples: whole -> usize;
+    budget: whole -> u64;
+    unknown: text -> Text;
     threads: whole -> usize;
     index: whole -> usize;
     robots: whole -> usize;
+    width: whole -> u32;
     period_ms: optional_whole -> Option<u32>;
     seed: whole -> u64;
     time_limit_s: optional_real -> Option<f64>;

@@ -10,6 +10,9 @@ mod computers;
 mod driver;
 mod episode;
 mod library;
+mod picture;
+mod ranking;
+mod research;
 mod saved;
 mod settings;
 mod simulator;
@@ -28,11 +31,17 @@ mod onetwo_native {
     #[pymodule_export]
     use super::library::{_library, Library, explain, retrieve};
     #[pymodule_export]
+    use super::research::{_coverage, _draft, _files, _learn, _rank, _retrieve};
+    #[pymodule_export]
     use super::simulator::{_simulator, Simulator};
     #[pymodule_export]
     use super::trial::trial;
     #[pymodule_export]
     use super::vector::{_vector, VectorSimulator};
+
+    /// Names of the symmetries, by a stored case's id modulo 4.
+    #[pymodule_export]
+    const SYMMETRIES: [&str; 4] = super::research::SYMMETRIES;
 
     /// The package's version.
     #[pymodule_export]

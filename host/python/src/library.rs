@@ -164,7 +164,7 @@ pub fn chosen(settings: Option<&Bound<'_, PyAny>>) -> PyResult<Chosen> {
 }
 
 /// The line of JSON in which the program takes a problem: a string as it is, anything else as JSON.
-fn line_of(problem: &Bound<'_, PyAny>) -> PyResult<String> {
+pub fn line_of(problem: &Bound<'_, PyAny>) -> PyResult<String> {
     if let Ok(text) = problem.cast::<PyString>() {
         return Ok(text.to_string());
     }

@@ -13,6 +13,7 @@ use rules::{Colour, League};
 use crate::argument::{self, Text};
 use crate::driver::Driver;
 use crate::episode::Episode;
+use crate::picture::{self, Pixels};
 use crate::refused;
 use crate::saved::{restored, saved};
 use crate::settings::{ACTION_LEN, End, Settings, View};
@@ -151,6 +152,26 @@ impl Simulator {
         state.set_item("score", (of.score[0], of.score[1]))?;
         state.set_item("in_play", of.in_play)?;
         Ok(state)
+    }
+
+    /// The drawn field `width` pixels wide: red, green and blue of each pixel, width, height.
+    fn pixels<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = argument::width)] width: u32,
+    ) -> PyResult<(Bound<'py, PyBytes>, u32, u32)> {
+        pixels_of(py, &self.episode, width)
+    }
+
+    /// The drawn field as SVG.
+    #[pyo3(signature = (width = 960))]
+    fn svg(&self, #[pyo3(from_py_with = argument::width)] width: u32) -> PyResult<String> {
+        Ok(picture::svg(&self.episode.state, width_of(width)?))
+    }
+
+    /// The picture of a notebook's cell.
+    fn _repr_svg_(&self) -> String {
+        picture::svg(&self.episode.state, NOTEBOOK_WIDTH)
     }
 
     /// Places the ball on the ground, rolling with that velocity.
@@ -298,6 +319,23 @@ impl Simulator {
     }
 }
 
+/// Bytes of the drawn field, width, height.
+pub fn pixels_of<'py>(
+    py: Python<'py>,
+    episode: &Episode,
+    width: u32,
+) -> PyResult<(Bound<'py, PyBytes>, u32, u32)> {
+    let svg = picture::svg(&episode.state, width_of(width)?);
+    let Pixels { rgb, size } = py.detach(|| picture::pixels(&svg)).map_err(failed)?;
+    Ok((PyBytes::new(py, &rgb), size[0], size[1]))
+}
+
+fn width_of(width: u32) -> PyResult<u32> {
+    let (least, most) = (picture::WIDTHS.start(), picture::WIDTHS.end());
+    let refusal = || refused(format!("width {width}: take {least} to {most} pixels"));
+    picture::WIDTHS.contains(&width).then_some(width).ok_or_else(refusal)
+}
+
 /// A simulator read from its pickle.
 #[pyfunction]
 pub fn _simulator(py: Python<'_>, state: &[u8]) -> PyResult<Simulator> {
@@ -392,3 +430,6 @@ fn finite(name: &str, values: &[f32]) -> PyResult<()> {
         None => Ok(()),
     }
 }
+
+/// Width of a picture in a notebook, px.
+const NOTEBOOK_WIDTH: u32 = 720;

@@ -11,7 +11,7 @@ use crate::episode::{Episode, Saved};
 use crate::refused;
 use crate::saved::{restored, saved};
 use crate::settings::{End, Settings, View};
-use crate::simulator::{Simulator, bytes_of, failed, read_actions, write};
+use crate::simulator::{Simulator, bytes_of, failed, pixels_of, read_actions, write};
 use rules::Colour;
 
 /// What `pickle` calls to make a vector again: the function, the saved state, the number of threads.
@@ -106,6 +106,19 @@ impl VectorSimulator {
     /// Whether each episode has ended.
     fn ended(&self) -> Vec<bool> {
         self.slots().map(|slot| slot.episode.state.end.is_some()).collect()
+    }
+
+    /// The drawn field of an episode, as `Simulator.pixels`.
+    fn pixels<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = argument::index)] index: usize,
+        #[pyo3(from_py_with = argument::width)] width: u32,
+    ) -> PyResult<(Bound<'py, PyBytes>, u32, u32)> {
+        let count = self.count();
+        let slot = self.slots().nth(index);
+        let slot = slot.ok_or_else(|| refused(format!("index {index}: there are {count} episodes")))?;
+        pixels_of(py, &slot.episode, width)
     }
 
     /// The whole state of all episodes as bytes.

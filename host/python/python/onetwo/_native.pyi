@@ -3,11 +3,25 @@ along the length."""
 
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import Any, final
+from typing import Any, Protocol, SupportsFloat, SupportsIndex, final
 
-from typing_extensions import Buffer
+import typing_extensions
+
+class _Array(Protocol):
+    """An array of NumPy, whose own types say only from Python 3.12 on that it is a buffer."""
+
+    @property
+    def __array_interface__(self) -> dict[str, Any]: ...
+
+Buffer = typing_extensions.Buffer | _Array
+Whole = SupportsIndex
+"""A whole number, Python's or NumPy's."""
+Real = SupportsFloat | SupportsIndex
 
 VERSION: str
+
+SYMMETRIES: list[str]
+"""Names of the symmetries, by the id of a stored case modulo 4."""
 
 Problem = str | Mapping[str, Any]
 """A situation, as a line of `onetwo cases retrieve` or as the same object: {"ball": [x, y], "defending": "yellow" or
@@ -20,6 +34,8 @@ Settings = Mapping[str, Any]
 class Library:
     """A case library, opened once and asked many times; a directory's stays in memory until the process ends."""
 
+    def __copy__(self) -> Library: ...
+    def __deepcopy__(self, _memo: Any, /) -> Library: ...
     def __new__(cls, league: str = "four-legged", *, directory: str | PathLike[str] | None = None) -> Library:
         """Opens a built-in league's library, or one league's directory of case files.
 
@@ -52,14 +68,14 @@ def trial(
     scenario: str = "3",
     opponents: str = "dg",
     approach: str = "cbr",
-    seed: int = 1,
+    seed: Whole = 1,
     profile: str = "simulated",
-    robots: int = 2,
+    robots: Whole = 2,
     library: Library | None = None,
     settings: Settings | None = None,
     positioning: str = "dependent",
-    retrievers: int | None = None,
-    loss: float = 0.0,
+    retrievers: Whole | None = None,
+    loss: Real = 0.0,
     symmetry: bool = True,
     case_opponents: bool = True,
     opponents_play_on: bool = False,
@@ -85,20 +101,22 @@ class Simulator:
 
     Tasks, their rewards and ends: the package's README."""
 
+    def __copy__(self) -> Simulator: ...
+    def __deepcopy__(self, _memo: Any, /) -> Simulator: ...
     def __new__(
         cls,
-        own: int | None = None,
-        opponents: int | None = None,
+        own: Whole | None = None,
+        opponents: Whole | None = None,
         *,
         task: str = "score",
-        agents: int | None = None,
+        agents: Whole | None = None,
         teammates_by: str = "none",
         opponents_by: str | None = None,
         world: str = "nominal",
         league: str = "division-b",
-        period_ms: int | None = None,
-        time_limit_s: float | None = None,
-        seed: int = 0,
+        period_ms: Whole | None = None,
+        time_limit_s: Real | None = None,
+        seed: Whole = 0,
     ) -> Simulator:
         """A simulator, with its first episode started. Raises ValueError for a value outside of these.
 
@@ -109,7 +127,7 @@ class Simulator:
         world: "nominal", a profile of `onetwo play --world`, "random" (another one for each seed) or "random:SEED".
         league: "division-b", "division-a" or "ssl-2013". period_ms: simulated time of a step, 1 to 100 ms, 25 unless
         given; a multiple of 10 where a coach, a reference team or the referee takes part, 30 unless given."""
-    def reset(self, seed: int) -> None:
+    def reset(self, seed: Whole) -> None:
         """Starts another episode, from random start positions that follow from the seed alone."""
     def step(
         self,
@@ -123,16 +141,24 @@ class Simulator:
         actions: `action_size` numbers, a buffer of float32 or a flat sequence. opponent_actions: five for each opponent,
         only with opponents_by="none"; they stand still without. into: see `observe`. Raises ValueError for another number
         of values or one that is not finite."""
-    def observe(self, into: Buffer, index: int = 0, opponent: bool = False) -> None:
+    def observe(self, into: Buffer, index: Whole = 0, opponent: bool = False) -> None:
         """Writes the observation into a writable buffer of `observation_size` float32: with own robot `index` first of its
         side, or seen by the opponents, who come first then and attack +x, with their robot `index` first."""
     def state(self) -> dict[str, Any]:
         """The true state: time_s; ball with position (x, y, height, m) and velocity (m/s); own and opponents, lists of
         robots with position (m), heading (rad), velocity (m/s), turning (rad/s) and ball_contact; under the referee score
         (own, opponents) and in_play."""
-    def place_ball(self, x: float, y: float, vx: float = 0.0, vy: float = 0.0) -> None:
+    def pixels(self, width: Whole) -> tuple[bytes, int, int]:
+        """The drawn field `width` pixels wide, 64 to 4096: red, green and blue of each pixel row by row from the top, width
+        and height, both even. Own robots are blue, those that `actions` move framed in black, opponents grey; a white line
+        is a robot's front."""
+    def svg(self, width: Whole = 960) -> str:
+        """The drawn field as SVG."""
+    def _repr_svg_(self) -> str:
+        """The picture of a notebook's cell."""
+    def place_ball(self, x: Real, y: Real, vx: Real = 0.0, vy: Real = 0.0) -> None:
         """Places the ball on the ground (m), rolling with that velocity (m/s)."""
-    def place_robot(self, index: int, x: float, y: float, heading: float = 0.0, *, opponent: bool = False) -> None:
+    def place_robot(self, index: Whole, x: Real, y: Real, heading: Real = 0.0, *, opponent: bool = False) -> None:
         """Places a robot at rest (m, rad): an own one by its index from 0, or an opponent."""
     def save(self) -> bytes:
         """The state of the episode: a simulator that restores it goes on bit for bit, in another process too.
@@ -180,12 +206,13 @@ class VectorSimulator:
     ENDS: tuple[str | None, ...] | list[str | None]
     """Names of the ends by the numbers that `step` writes; None for 0."""
 
-    def __new__(cls, simulator: Simulator, count: int, threads: int) -> VectorSimulator:
+    def __deepcopy__(self, _memo: Any, /) -> VectorSimulator: ...
+    def __new__(cls, simulator: Simulator, count: Whole, threads: Whole) -> VectorSimulator:
         """`count` episodes, 1 to 10,000, with the settings of `simulator`, from seeds 0 up; on at most `threads` threads, 1 to 256."""
     def step(
         self,
         actions: Buffer | Sequence[float],
-        restarts: Sequence[tuple[int, int]],
+        restarts: Sequence[tuple[Whole, Whole]],
         observations: Buffer,
         rewards: Buffer,
         ends: Buffer,
@@ -194,9 +221,45 @@ class VectorSimulator:
         (float32) and numbers of `ENDS` (uint8) of all. Raises ValueError as `Simulator.step` does."""
     def times_s(self) -> list[float]:
         """Simulated time of each episode, s."""
+    def pixels(self, index: Whole, width: Whole) -> tuple[bytes, int, int]:
+        """The drawn field of an episode, as `Simulator.pixels`."""
     def ended(self) -> list[bool]:
         """Whether each episode has ended."""
     def save(self) -> bytes:
         """The state of all episodes, as `Simulator.save`."""
     def restore(self, state: bytes) -> None:
         """As `Simulator.restore`, for as many episodes."""
+
+# What `onetwo.cases` is made of.
+def _rank(
+    library: Library,
+    columns: tuple[Any, ...],
+    k: Whole,
+    weights: dict[str, float],
+    local: dict[str, Any],
+    unknown: str,
+    settings: Settings | None,
+    threads: Whole,
+    into: list[Any],
+) -> None: ...
+def _retrieve(library: Library, columns: tuple[Any, ...], settings: Settings | None, threads: Whole, into: Any) -> None: ...
+def _coverage(
+    library: Library, columns: tuple[Any, ...] | None, samples: Whole, seed: Whole, settings: Settings | None, threads: Whole
+) -> dict[str, Any]: ...
+def _draft(library: Library, problem: Problem) -> dict[str, Any]: ...
+def _files(library: Library) -> dict[str, str]: ...
+def _learn(
+    library: Library,
+    budget: Whole,
+    seed: Whole,
+    kinds: list[str],
+    profile: str,
+    error_rate: Real,
+    dry_run: bool,
+    threads: Whole,
+) -> tuple[dict[str, Any], dict[str, str]]: ...
+
+# What `pickle` calls.
+def _library(league: str, directory: str | PathLike[str] | None) -> Library: ...
+def _simulator(state: bytes) -> Simulator: ...
+def _vector(state: bytes, threads: Whole) -> VectorSimulator: ...

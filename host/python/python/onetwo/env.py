@@ -15,8 +15,10 @@ from gymnasium import spaces
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
 
 from ._native import Simulator, VectorSimulator
+from ._render import RENDER_MODES, WIDTH, Renderer, array, frames_per_second
 from ._saved import pack, unpack
 
 TASKS = {
@@ -30,35 +32,18 @@ TASKS = {
 }
 SCORE = "onetwo/Score-v0"
 
-Policy = Callable[[np.ndarray], np.ndarray]
+Floats = NDArray[np.float32]
+Policy = Callable[[Floats], Floats]
 """Orders of a side's robots that the agent does not move, five numbers each, by that side's observation: it attacks +x
 there, and the first of these robots comes first."""
 
-RENDER_MODES = ["ansi"]
 
-
-def described(simulator: Simulator) -> str:
-    """The state as a line of text: time, ball and robots, m."""
-    state = simulator.state()
-    parts = [f"{state['time_s']:.2f} s", "ball ({:+.2f}, {:+.2f})".format(*state["ball"]["position"])]
-    for side in ("own", "opponents"):
-        parts += [f"{side} {n} ({r['position'][0]:+.2f}, {r['position'][1]:+.2f})" for n, r in enumerate(state[side])]
-    return "; ".join(parts)
-
-
-def checked_render_mode(render_mode: str | None) -> str | None:
-    """The mode, if it is one."""
-    if render_mode not in (None, *RENDER_MODES):
-        raise ValueError(f"render_mode {render_mode!r}: take 'ansi', a line of text, or none")
-    return render_mode
-
-
-def box(size: int) -> spaces.Box:
+def box(size: int) -> spaces.Box[np.float32]:
     """`size` values of float32 within ±1."""
     return spaces.Box(-1.0, 1.0, (size,), np.float32)
 
 
-class TaskEnv(gymnasium.Env):
+class TaskEnv(gymnasium.Env[Floats, Floats]):
     """A task of `onetwo.Simulator`, which has its actions, observations, rewards and ends.
 
     The agent moves the first `agents` own robots, by default all; `teammates_by` and `opponents_by` move the others: a
@@ -67,6 +52,8 @@ class TaskEnv(gymnasium.Env):
     """
 
     metadata = {"render_modes": RENDER_MODES, "render_fps": 40}
+    action_space: spaces.Box[np.float32]
+    observation_space: spaces.Box[np.float32]
 
     def __init__(
         self,
@@ -78,9 +65,9 @@ class TaskEnv(gymnasium.Env):
         teammates_by: str | Policy = "none",
         opponents_by: str | Policy | None = None,
         render_mode: str | None = None,
+        width: int = WIDTH,
         **settings: Any,
     ) -> None:
-        self.render_mode = checked_render_mode(render_mode)
         self._teammates = teammates_by if callable(teammates_by) else None
         self._opponents = opponents_by if callable(opponents_by) else None
         self.simulator = Simulator(
@@ -88,8 +75,8 @@ class TaskEnv(gymnasium.Env):
             opponents,
             task=task,
             agents=agents,
-            teammates_by="none" if self._teammates else teammates_by,
-            opponents_by="none" if self._opponents else opponents_by,
+            teammates_by=teammates_by if isinstance(teammates_by, str) else "none",
+            opponents_by="none" if callable(opponents_by) else opponents_by,
             **settings,
         )
         self._agents = self.simulator.robots[1]
@@ -98,11 +85,14 @@ class TaskEnv(gymnasium.Env):
             self.simulator = Simulator(
                 own, opponents, task=task, opponents_by=self.simulator.opponents_by, **settings
             )
+        self.render_mode = render_mode
+        self._renderer = Renderer(render_mode, width, self.simulator)
+        self.metadata = {**self.metadata, "render_fps": frames_per_second(self.simulator)}
         self.action_space = box(5 * self._agents)
         self.observation_space = box(self.simulator.observation_size)
 
-    def _observation(self, index: int = 0, opponent: bool = False) -> np.ndarray:
-        observation = np.empty(self.observation_space.shape, np.float32)
+    def _observation(self, index: int = 0, opponent: bool = False) -> Floats:
+        observation = np.empty(self.simulator.observation_size, np.float32)
         self.simulator.observe(observation, index, opponent)
         return observation
 
@@ -111,27 +101,32 @@ class TaskEnv(gymnasium.Env):
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[np.ndarray, dict[str, Any]]:
+    ) -> tuple[Floats, dict[str, Any]]:
         """Starts an episode; with a seed it and all that follow are the same every time."""
         super().reset(seed=seed)
         self.simulator.reset(int(self.np_random.integers(2**63)))
+        self._renderer.show(self.simulator)
         return self._observation(), self._info(None)
 
-    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+    def step(self, action: Floats) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
         """Plays one control period."""
         if self._teammates:
             action = np.concatenate([action, self._teammates(self._observation(self._agents))])
         against = self._opponents(self._observation(0, True)) if self._opponents else None
-        observation = np.empty(self.observation_space.shape, np.float32)
+        observation = np.empty(self.simulator.observation_size, np.float32)
         reward, end = self.simulator.step(action, against, observation)
+        self._renderer.show(self.simulator)
         truncated = end == "time"
         return observation, reward, end is not None and not truncated, truncated, self._info(end)
 
-    def render(self) -> str:
-        """With `render_mode="ansi"` the state as a line of text."""
-        if self.render_mode is None:
-            raise ValueError("render: make the environment with render_mode='ansi', the only one that it has")
-        return described(self.simulator)
+    def render(self) -> str | NDArray[np.uint8] | None:
+        """By `render_mode`: "ansi", the state as a line of text; "rgb_array", the drawn field `width` pixels wide;
+        "human", the same in a window, which `step` and `reset` update by themselves."""
+        return self._renderer.render(self.simulator)
+
+    def close(self) -> None:
+        """Closes the window of render_mode "human"."""
+        self._renderer.close()
 
     def save(self) -> bytes:
         """The state of episode and random generator; that of a policy is not in it."""
@@ -148,7 +143,7 @@ class ScoreEnv(TaskEnv):
     """`TaskEnv` with the task score: get the ball and score."""
 
 
-class TaskVectorEnv(VectorEnv):
+class TaskVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     """`num_envs` episodes of a task, stepped by one call on `threads` threads, by default as many as processors.
 
     Episode i is the one that the i-th environment of a `SyncVectorEnv` of `TaskEnv`s would play, bit for bit. A finished
@@ -156,16 +151,30 @@ class TaskVectorEnv(VectorEnv):
     ended, `info` has "end" and "time_s" with their masks. Takes the settings of `onetwo.Simulator`, no policies.
     """
 
-    metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
+    metadata = {"render_modes": ["rgb_array"], "autoreset_mode": AutoresetMode.NEXT_STEP}
+    single_action_space: spaces.Box[np.float32]
+    single_observation_space: spaces.Box[np.float32]
 
-    def __init__(self, num_envs: int = 1, *, threads: int | None = None, **settings: Any) -> None:
+    def __init__(
+        self,
+        num_envs: int = 1,
+        *,
+        threads: int | None = None,
+        render_mode: str | None = None,
+        width: int = WIDTH,
+        **settings: Any,
+    ) -> None:
         if callable(settings.get("opponents_by")) or callable(settings.get("teammates_by")):
             raise ValueError("opponents_by, teammates_by: a vector environment takes names, no policies")
-        if settings.pop("render_mode", None) is not None:
-            raise ValueError("render_mode: a vector environment renders nothing; take none")
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode {render_mode!r}: a vector environment takes 'rgb_array', or none")
         template = Simulator(**settings)
+        template.pixels(width)
+        self.render_mode, self._width = render_mode, width
+        self.metadata = {**self.metadata, "render_fps": frames_per_second(template)}
         self.num_envs = num_envs
         self.simulators = VectorSimulator(template, num_envs, os.cpu_count() or 1 if threads is None else threads)
+        self._size = template.observation_size
         self.single_action_space = box(template.action_size)
         self.single_observation_space = box(template.observation_size)
         self.action_space = batch_space(self.single_action_space, num_envs)
@@ -174,8 +183,10 @@ class TaskVectorEnv(VectorEnv):
         self._done = np.ones(num_envs, np.bool_)
         self._none = np.zeros((num_envs, template.action_size), np.float32)
 
-    def _step(self, actions: np.ndarray, restarts: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        observations = np.empty(self.observation_space.shape, np.float32)
+    def _step(
+        self, actions: Floats, restarts: NDArray[np.bool_]
+    ) -> tuple[Floats, Floats, NDArray[np.uint8]]:
+        observations = np.empty((self.num_envs, self._size), np.float32)
         rewards = np.empty(self.num_envs, np.float32)
         ends = np.empty(self.num_envs, np.uint8)
         seeds = [(int(i), int(self._generators[i].integers(2**63))) for i in np.flatnonzero(restarts)]
@@ -185,7 +196,7 @@ class TaskVectorEnv(VectorEnv):
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[np.ndarray, dict[str, Any]]:
+    ) -> tuple[Floats, dict[str, Any]]:
         """Starts all episodes; `seed` is one number, from which episodes count up, or a list."""
         seeds = [seed + i for i in range(self.num_envs)] if isinstance(seed, int) else seed or [None] * self.num_envs
         if len(seeds) != self.num_envs:
@@ -197,8 +208,8 @@ class TaskVectorEnv(VectorEnv):
         return observations, {}
 
     def step(
-        self, actions: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        self, actions: Floats
+    ) -> tuple[Floats, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         """Plays one control period of each episode, or starts those again that had ended."""
         actions = np.ascontiguousarray(actions, np.float32)
         observations, rewards, ends = self._step(actions, self._done)
@@ -208,6 +219,12 @@ class TaskVectorEnv(VectorEnv):
             names = np.array([VectorSimulator.ENDS[end] for end in ends], object)
             info = {"end": names, "_end": self._done, "time_s": np.array(self.simulators.times_s()), "_time_s": self._done}
         return observations, rewards.astype(np.float64), self._done & ~truncations, truncations, info
+
+    def render(self) -> tuple[NDArray[np.uint8], ...]:
+        """With render_mode "rgb_array" the drawn field of each episode."""
+        if self.render_mode is None:
+            raise ValueError("render: make the environment with render_mode='rgb_array'")
+        return tuple(array(self.simulators.pixels(i, self._width)) for i in range(self.num_envs))
 
     def save(self) -> bytes:
         """The state of all episodes and random generators."""

@@ -10,14 +10,16 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 from gymnasium.utils import seeding
-from pettingzoo import ParallelEnv
+from numpy.typing import NDArray
+from pettingzoo import ParallelEnv  # type: ignore[import-untyped,unused-ignore]
 
 from ._native import Simulator
+from ._render import RENDER_MODES, WIDTH, Renderer, frames_per_second
 from ._saved import pack, unpack
-from .env import RENDER_MODES, box, checked_render_mode, described
+from .env import box
 
 
-class TaskParallelEnv(ParallelEnv):
+class TaskParallelEnv(ParallelEnv):  # type: ignore[misc,unused-ignore]
     """A task of `onetwo.Simulator` with an agent for each own robot that the caller moves, `own_0` and on; with
     `opponents_by="agents"` also for each opponent, `opponent_0` and on.
 
@@ -34,11 +36,14 @@ class TaskParallelEnv(ParallelEnv):
         *,
         opponents_by: str | None = None,
         render_mode: str | None = None,
+        width: int = WIDTH,
         **settings: Any,
     ) -> None:
-        self.render_mode = checked_render_mode(render_mode)
         agents = opponents_by == "agents"
         self.simulator = Simulator(own, opponents, opponents_by="none" if agents else opponents_by, **settings)
+        self.render_mode = render_mode
+        self._renderer = Renderer(render_mode, width, self.simulator)
+        self.metadata = {**self.metadata, "render_fps": frames_per_second(self.simulator)}
         _, own, opponents = self.simulator.robots
         self._robots = {f"own_{n}": (n, False) for n in range(own)}
         self._robots |= {f"opponent_{n}": (n, True) for n in range(opponents if agents else 0)}
@@ -57,7 +62,7 @@ class TaskParallelEnv(ParallelEnv):
         """Five values of float32 within ±1."""
         return self.action_spaces[agent]
 
-    def _observations(self) -> dict[str, np.ndarray]:
+    def _observations(self) -> dict[str, NDArray[np.float32]]:
         found = {name: np.empty(self.simulator.observation_size, np.float32) for name in self.agents}
         for name, observation in found.items():
             self.simulator.observe(observation, *self._robots[name])
@@ -65,16 +70,17 @@ class TaskParallelEnv(ParallelEnv):
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[dict[str, np.ndarray], dict[str, dict[str, Any]]]:
+    ) -> tuple[dict[str, NDArray[np.float32]], dict[str, dict[str, Any]]]:
         """Starts an episode; with a seed it and all that follow are the same every time."""
         if seed is not None:
             self._random = seeding.np_random(seed)[0]
         self.simulator.reset(int(self._random.integers(2**63)))
         self.agents = list(self.possible_agents)
+        self._renderer.show(self.simulator)
         return self._observations(), {name: {} for name in self.agents}
 
-    def step(self, actions: dict[str, np.ndarray]) -> tuple[
-        dict[str, np.ndarray], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]
+    def step(self, actions: dict[str, NDArray[np.float32]]) -> tuple[
+        dict[str, NDArray[np.float32]], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]
     ]:
         """Plays one control period; an agent without an action stands."""
         orders = {opponent: np.zeros((count, 5), np.float32) for opponent, count in ((False, self._own), (True, self._against))}
@@ -85,6 +91,7 @@ class TaskParallelEnv(ParallelEnv):
             orders[opponent][index] = action
         against = orders[True].ravel() if self._against else None
         reward, end = self.simulator.step(orders[False].ravel(), against)
+        self._renderer.show(self.simulator)
         truncated = end == "time"
         terminated = end is not None and not truncated
         info = {"end": end, "time_s": self.simulator.time_s, "score": self.simulator.score}
@@ -99,14 +106,13 @@ class TaskParallelEnv(ParallelEnv):
             {name: dict(info) for name in names},
         )
 
-    def render(self) -> str:
-        """With `render_mode="ansi"` the state as a line of text."""
-        if self.render_mode is None:
-            raise ValueError("render: make the environment with render_mode='ansi', the only one that it has")
-        return described(self.simulator)
+    def render(self) -> str | NDArray[np.uint8] | None:
+        """As `TaskEnv.render`."""
+        return self._renderer.render(self.simulator)
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Closes the window of render_mode "human"."""
+        self._renderer.close()
 
     def save(self) -> bytes:
         """The state of episode and random generator."""
