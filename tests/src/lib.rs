@@ -9,6 +9,7 @@ pub mod invariants;
 pub mod led_robot;
 pub mod oracle;
 pub mod random_library;
+pub mod soak;
 pub mod swarm;
 pub mod sweep;
 pub mod tabletop;

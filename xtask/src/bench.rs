@@ -16,3 +16,8 @@ pub(crate) fn start(context: &Context, name: &str, arguments: &[String]) -> Resu
 pub(crate) fn start_example(context: &Context, name: &str, arguments: &[String]) -> Result<(), Failure> {
     run(context.cargo(&format!("run --release --package match-tests --example {name} --")).args(arguments))
 }
+
+/// Starts the example `soak`, built with checks of overflow and debug assertions.
+pub(crate) fn soak(context: &Context, arguments: &[String]) -> Result<(), Failure> {
+    run(context.cargo("run --package match-tests --example soak --").args(arguments))
+}

@@ -90,12 +90,15 @@ const fn handed_on(
 }
 
 static TASKS: [Task; 23] = [
-    task(
+    handed_on(
         "soak",
-        "",
+        "[--hours N [--dir DIR] [--jobs J] [--only NAME] | --repeat NAME:RECIPE]",
         "run the tests with what depends on how fast or busy this machine is, which `test` leaves out: how long HALT and\n\
-        \x20                alarms take, and frames of the page",
-        |context, _| page::soak(context),
+        \x20                alarms take, and frames of the page; --hours plays swarm runs, matches, and mutated packets, files\n\
+        \x20                and bytes for so long, goes on where it stopped, and keeps corpora and findings in out/soak",
+        |context, arguments| {
+            if arguments.is_empty() { page::soak(context) } else { bench::soak(context, arguments) }
+        },
     ),
     handed_on(
         "docs",

@@ -1,6 +1,6 @@
-//! `onetwo launch`: simulator, both teams and, where its program is named, the league's game controller: started
-//! with one command, ended with one Ctrl-C (docs/start.md). Each is a process of its own, as when it is started
-//! by hand; lines of their output are printed with their name.
+//! `onetwo launch`: simulator, both teams and, where its program is named, the league's game controller:
+//! started with one command, ended with one Ctrl-C (docs/start.md). Each is a process of its own, as when it
+//! is started by hand; lines of their output are printed with their name.
 
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::PathBuf;
@@ -28,8 +28,8 @@ pub(crate) struct LaunchArgs {
     /// Random seed of the simulator.
     #[arg(short, long, default_value_t = 1)]
     seed: u64,
-    /// The league's game controller, a program; its settings are kept in `config` in this directory. Without it
-    /// the simulator's internal referee leads the match.
+    /// The league's game controller, a program; its settings are kept in `config` in this directory. Without
+    /// it the simulator's internal referee leads the match.
     #[arg(long, value_name = "PATH")]
     game_controller: Option<PathBuf>,
     /// A program that gives blue's orders (docs/strategy-protocol.md).

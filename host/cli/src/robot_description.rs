@@ -95,8 +95,8 @@ pub(crate) fn ensure_built_for(asked: Option<&str>) -> Result<(), DescriptionErr
     Err(DescriptionError::OtherRobot { asked: asked.to_owned(), built_for: RobotSpec::OURS.name, keys })
 }
 
-/// The robot of a description, as the simulator takes it; what only brains, hosts and boards compute with stays
-/// the reference robot's.
+/// The robot of a description, as the simulator takes it; what only brains, hosts and boards compute with
+/// stays the reference robot's.
 pub(crate) fn simulated(asked: Option<&str>) -> Result<RobotSpec, DescriptionError> {
     let Some(asked) = asked else { return Ok(RobotSpec::OURS) };
     let (_, of) = read(asked)?;

@@ -233,8 +233,8 @@ impl MatchesArgs {
 
 /// What is compared: the strategy's command, or who else played.
 fn version(identity: &MatchIdentity) -> String {
-    let program = || format!("{}, cases {}", identity.program, identity.case_base);
-    identity.plan.strategy.clone().unwrap_or_else(program)
+    let MatchIdentity { plan, program, case_base, .. } = identity;
+    plan.strategy.clone().unwrap_or_else(|| format!("{program}, cases {case_base}"))
 }
 
 /// Results of all matches.
