@@ -25,9 +25,9 @@ fn main() {
     if let Some(hash) = sources::source_hash(&root) {
         println!("cargo::rustc-env=ONETWO_IMAGE_SOURCES={hash:08x}");
     }
-    sources::SOURCES
-        .iter()
-        .for_each(|source| println!("cargo::rerun-if-changed={}", root.join(source).display()));
+    for source in sources::SOURCES {
+        println!("cargo::rerun-if-changed={}", root.join(source).display());
+    }
     rerun_when_head_moves();
 }
 

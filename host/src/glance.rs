@@ -114,7 +114,9 @@ pub fn table(robots: &[RobotGlance]) -> String {
             or_dash(robot.version.clone()),
             if robot.faults.is_empty() { "none".to_owned() } else { robot.faults.join(", ") }
         );
-        robot.wrong.iter().for_each(|sentence| _ = write!(text, "\n             {sentence}"));
+        for sentence in &robot.wrong {
+            let _ = write!(text, "\n             {sentence}");
+        }
     }
     text
 }
