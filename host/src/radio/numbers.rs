@@ -30,18 +30,18 @@ impl RobotNumbers {
     /// that is given away, gets the lowest that is left. Error: the two shells that are given one number.
     pub fn new(given: [Option<RobotId>; RobotId::COUNT]) -> Result<Self, [RobotId; 2]> {
         let mut owner = [None; RobotId::COUNT];
-        let listed = || RobotId::all().filter_map(|shell| Some((shell, given[shell.index()]?)));
-        for (shell, radio) in listed() {
+        let mut numbers = Self { given, ..Self::default() };
+        for shell in RobotId::all() {
+            let Some(radio) = given[shell.index()] else { continue };
             if let Some(first) = owner[radio.index()].replace(shell) {
                 return Err([first, shell]);
             }
+            numbers.radio[shell.index()] = radio;
         }
-        let mut numbers = Self { given, ..Self::default() };
-        let unlisted = || RobotId::all().filter(|shell| given[shell.index()].is_none());
-        let homeless = unlisted().filter(|shell| owner[shell.index()].is_some());
-        let free =
-            RobotId::all().filter(|radio| owner[radio.index()].is_none() && given[radio.index()].is_some());
-        for (shell, radio) in listed().chain(homeless.zip(free)) {
+        let (given, owned) = (given.map(|radio| radio.is_some()), owner.map(|shell| shell.is_some()));
+        let homeless = RobotId::all().filter(|shell| !given[shell.index()] && owned[shell.index()]);
+        let free = RobotId::all().filter(|radio| !owned[radio.index()] && given[radio.index()]);
+        for (shell, radio) in homeless.zip(free) {
             numbers.radio[shell.index()] = radio;
         }
         Ok(numbers)
