@@ -1,7 +1,6 @@
-//! `build`: build script: the commit that this program is built from, its date, and the hash of the sources of
-//! the robots' images. Answered by git at build
+//! `build`: build script: the commit that this program is built from, and its date, answered by git at build
 //! time, for `onetwo --version` and for everything that records where it came from; "unknown" where there is
-//! no git or no repository of ours.
+//! no git or no repository of ours. Also the hash of the sources of the robots' images.
 #![forbid(unsafe_code)]
 
 use std::path::Path;
@@ -25,9 +24,9 @@ fn main() {
     if let Some(hash) = sources::source_hash(&root) {
         println!("cargo::rustc-env=ONETWO_IMAGE_SOURCES={hash:08x}");
     }
-    sources::SOURCES
-        .iter()
-        .for_each(|source| println!("cargo::rerun-if-changed={}", root.join(source).display()));
+    for source in sources::SOURCES {
+        println!("cargo::rerun-if-changed={}", root.join(source).display());
+    }
     rerun_when_head_moves();
 }
 

@@ -1,5 +1,5 @@
-//! `glance`: our robots at a glance: for each what cameras, radio and its own telemetry say of it, beside what
-//! it should have. Times on the host's clock; ms, V.
+//! `glance`: our robots at a glance: for each what cameras, radio and its telemetry say of it, beside what it
+//! should have. Times on the host's clock; ms, V.
 
 use std::fmt::Write as _;
 
@@ -49,8 +49,7 @@ fn robot(host: &Host, shell: RobotId, now: Instant) -> Option<RobotGlance> {
     let (us, numbers) = (host.settings().us, host.radio().numbers());
     let mut seen: Vec<_> = host.tracker().sightings(Who { colour: us, id: shell }).collect();
     seen.sort_by_key(|(camera, at)| (std::cmp::Reverse(*at), *camera));
-    let listed = |(i, (_, at)): (usize, &(u32, Instant))| i == 0 || now.since(*at) < LISTED_FOR;
-    let listed = seen.iter().enumerate().take_while(|camera| listed(*camera)).count();
+    let listed = seen.iter().take_while(|(_, at)| now.since(*at) < LISTED_FOR).count().max(1);
     let cameras: Vec<_> = seen.iter().take(listed).map(|(id, at)| (*id, now.since(*at).0 / 1_000)).collect();
     let quality = host.quality(shell);
     if cameras.is_empty() && quality.is_none() && numbers.given(shell).is_none() {
@@ -98,23 +97,25 @@ pub fn table(robots: &[RobotGlance]) -> String {
     );
     for robot in robots {
         let cameras: Vec<String> = robot.cameras.iter().map(|(id, ms)| format!("{id} ({ms})")).collect();
-        let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
-        let some = |list: &[String], none: &str| {
-            if list.is_empty() { none.to_owned() } else { list.join(", ") }
-        };
         let _ = write!(
             text,
             "\n{:>5} {:>5}  {:<26}{:>8}  {:>9}  {:<8}  {}; {}",
             robot.shell,
             robot.radio,
-            some(&cameras, "-"),
+            or_dash(Some(cameras.join(", ")).filter(|cameras| !cameras.is_empty())),
             or_dash(robot.heard_ms.map(|ms| ms.to_string())),
             or_dash(robot.battery.map(|volts| format!("{volts:.1}"))),
             or_dash(robot.case_base.clone()),
             or_dash(robot.version.clone()),
             if robot.faults.is_empty() { "none".to_owned() } else { robot.faults.join(", ") }
         );
-        robot.wrong.iter().for_each(|sentence| _ = write!(text, "\n             {sentence}"));
+        for sentence in &robot.wrong {
+            let _ = write!(text, "\n             {sentence}");
+        }
     }
     text
+}
+
+fn or_dash(value: Option<String>) -> String {
+    value.unwrap_or_else(|| "-".to_owned())
 }

@@ -8,9 +8,9 @@
 //! [`robot_io`] is what a body gives its brain and takes from it; [`lockstep`] carries the latter between
 //! simulator and computer, [`provision`] is a robot's identity in its flash and [`network_page`] its place in
 //! an IP network, [`slot`] is where a computer finds a case table that was not built into it, [`journal`]
-//! keeps what a brain took in and gave out, [`bring_up`] is what a robot reports of its first start, [`version`]
-//! what it runs. The
-//! bytes are written down in `protocol/SPEC.md`, and tests hold the code to them.
+//! keeps what a brain took in and gave out, [`bring_up`] is what a robot reports of its first start,
+//! [`version`] what it runs. The bytes are written down in `protocol/SPEC.md`, and tests hold the code to
+//! them.
 //!
 //! **Invariants.** No I/O, no clock, no allocation; no input from outside can panic.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]

@@ -52,12 +52,11 @@ impl VersionReport {
 
     /// Which of version, image, `robot.toml` and case base are other than expected; unknown ones are not.
     pub fn differences(&self, expected: &Self) -> impl Iterator<Item = &'static str> {
-        let other = |own: u32, expected: u32| own != expected && own != 0 && expected != 0;
         let parts = [
             (self.version != expected.version, "version"),
-            (other(self.image, expected.image), "image"),
-            (other(self.robot, expected.robot), "robot.toml"),
-            (other(self.case_base, expected.case_base), "case base"),
+            (is_other(self.image, expected.image), "image"),
+            (is_other(self.robot, expected.robot), "robot.toml"),
+            (is_other(self.case_base, expected.case_base), "case base"),
         ];
         parts.into_iter().filter(|(differs, _)| *differs).map(|(_, part)| part)
     }
@@ -72,6 +71,11 @@ impl fmt::Display for VersionReport {
             "{major}.{minor}.{patch} (image {image:08x}, robot.toml {robot:08x}, cases {case_base:08x})"
         )
     }
+}
+
+/// Whether two hashes are known and differ.
+const fn is_other(own: u32, expected: u32) -> bool {
+    own != expected && own != 0 && expected != 0
 }
 
 /// FNV-1a hash of a text, 32 bits: no proof against forgery, which the frame's tag is for.

@@ -44,14 +44,13 @@ pub(crate) fn run(args: &RemoteArgs) -> Result<ExitCode, Failure> {
 }
 
 fn text(request: RemoteRequest, state: &RemoteState) -> String {
-    let list = |names: &[&str]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
     let keeper = state.keeper.map_or_else(|| "none".to_owned(), |keeper| keeper.to_string());
     format!(
         "{:<9} granted\nactive    {}\navailable {}\nkeeper    {keeper}; {} of {} robots on the field\n\
          timeouts  {} left, {:.0} s; challenge flags {}; substitutions {}\n",
         request.name(),
-        list(&state.active),
-        list(&state.available),
+        names(&state.active),
+        names(&state.available),
         state.robots_on_field,
         state.max_robots,
         state.timeouts_left,
@@ -59,4 +58,8 @@ fn text(request: RemoteRequest, state: &RemoteState) -> String {
         state.challenge_flags_left,
         state.substitutions_left,
     )
+}
+
+fn names(requests: &[&str]) -> String {
+    if requests.is_empty() { "none".to_owned() } else { requests.join(", ") }
 }

@@ -43,7 +43,7 @@ function glance(list) {
     numeric(age(one.heard_ms), !(one.heard_ms <= 200)), numeric(number(one.battery), one.faults.includes("battery low")),
     el("td", { class: one.faults.length ? "bad" : "fine" }, one.faults.join(", ") || "none"),
     el("td", {}, one.version ?? (one.case_base ? `cases ${one.case_base}` : "–")),
-    el("td", { class: one.wrong.length ? "bad" : "fine" }, one.wrong.join(" ") || "as expected")));
+    el("td", { class: one.wrong.length ? "bad" : "fine" }, one.wrong.join(" ") || "ok")));
   return [scroll("Robots at a glance", el("table", { class: "tight" },
     el("thead", {}, el("tr", {}, el("th", { scope: "col", title: "number on the shell" }, "shell"), head("radio", "number that it was flashed with: numbers.radio, in Parameters"), el("th", { scope: "col", title: "number of each camera, and how long ago it detected the robot" }, "seen by camera"),
       head("heard", "since its last frame"), head("V", "battery voltage"), el("th", { scope: "col" }, "faults"), el("th", { scope: "col", title: "firmware, and hashes of its image's sources, robot.toml and case base" }, "runs"), el("th", { scope: "col", title: "what it should have and has not, with the remedy" }, "beside what it should be"))),

@@ -233,7 +233,7 @@ fn each_finding_is_in_the_table_of_the_start_page() {
 }
 
 #[test]
-fn a_robot_with_another_number_than_its_shell_is_found_and_a_parameter_joins_the_two() {
+fn a_robot_with_another_number_than_its_shell_is_found_and_a_parameter_joins_both() {
     use ssl::Message as _;
     let (mut host, mut checks, mut robot) = (host(), HealthChecks::default(), robot());
     let shell = RobotId::new(4).unwrap();

@@ -6,8 +6,8 @@
 //! Only then it is commanded, addressed by snapshots, relayed and used by the strategy. Before, it is
 //! welcomed, at most every [`UNAUTHENTICATED_EVERY`].
 //!
-//! **Numbers.** Callers name robots by their shells, frames by their radio numbers ([`RobotNumbers`]); packets
-//! and their receivers ([`To`]) have radio numbers.
+//! **Numbers.** Callers name robots by their shells, frames by their radio numbers ([`RobotNumbers`]);
+//! packets and their receivers ([`To`]) have radio numbers.
 //!
 //! **Rate.** A new snapshot goes out at once, but at most one per [`PERIOD_MIN`] (100 Hz); one that comes too
 //! early waits, the newest replaces older ones. Where no new one comes for [`PERIOD_MAX`] (60 Hz) the last

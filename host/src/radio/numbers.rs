@@ -18,7 +18,9 @@ impl Default for RobotNumbers {
     /// Every robot has one number.
     fn default() -> Self {
         let mut radio = [RobotId::ZERO; RobotId::COUNT];
-        RobotId::all().for_each(|robot| radio[robot.index()] = robot);
+        for robot in RobotId::all() {
+            radio[robot.index()] = robot;
+        }
         Self { given: [None; RobotId::COUNT], radio }
     }
 }
@@ -28,19 +30,20 @@ impl RobotNumbers {
     /// that is given away, gets the lowest that is left. Error: the two shells that are given one number.
     pub fn new(given: [Option<RobotId>; RobotId::COUNT]) -> Result<Self, [RobotId; 2]> {
         let mut owner = [None; RobotId::COUNT];
-        let listed = || RobotId::all().filter_map(|shell| Some((shell, given[shell.index()]?)));
-        for (shell, radio) in listed() {
+        let mut numbers = Self { given, ..Self::default() };
+        for shell in RobotId::all() {
+            let Some(radio) = given[shell.index()] else { continue };
             if let Some(first) = owner[radio.index()].replace(shell) {
                 return Err([first, shell]);
             }
+            numbers.radio[shell.index()] = radio;
         }
-        let mut numbers = Self { given, ..Self::default() };
-        listed().for_each(|(shell, radio)| numbers.radio[shell.index()] = radio);
-        let unlisted = || RobotId::all().filter(|shell| given[shell.index()].is_none());
-        let homeless = unlisted().filter(|shell| owner[shell.index()].is_some());
-        let free =
-            RobotId::all().filter(|radio| owner[radio.index()].is_none() && given[radio.index()].is_some());
-        homeless.zip(free).for_each(|(shell, radio)| numbers.radio[shell.index()] = radio);
+        let (given, owned) = (given.map(|radio| radio.is_some()), owner.map(|shell| shell.is_some()));
+        let homeless = RobotId::all().filter(|shell| !given[shell.index()] && owned[shell.index()]);
+        let free = RobotId::all().filter(|radio| !owned[radio.index()] && given[radio.index()]);
+        for (shell, radio) in homeless.zip(free) {
+            numbers.radio[shell.index()] = radio;
+        }
         Ok(numbers)
     }
 
@@ -66,7 +69,9 @@ impl RobotNumbers {
         match &mut command.directive {
             Directive::Pass { receiver, .. } => *receiver = self.radio(*receiver),
             Directive::Gameplay { hint: Some(hint) } => {
-                hint.robots.iter_mut().for_each(|robot| *robot = self.radio(*robot));
+                for robot in &mut hint.robots {
+                    *robot = self.radio(*robot);
+                }
             }
             _ => {}
         }
@@ -79,7 +84,11 @@ impl RobotNumbers {
         if let Some(cycle) = &mut beacon.cycle {
             cycle.coordinator = self.shell(cycle.coordinator);
             match &mut cycle.decision {
-                Decision::Play(play) => play.robots.iter_mut().for_each(|robot| *robot = self.shell(*robot)),
+                Decision::Play(play) => {
+                    for robot in &mut play.robots {
+                        *robot = self.shell(*robot);
+                    }
+                }
                 Decision::Closed(Closure::Aborted { by, .. }) => *by = self.shell(*by),
                 _ => {}
             }
@@ -92,7 +101,9 @@ impl RobotNumbers {
         if let Grounds::Holds(robot) = &mut report.grounds {
             *robot = self.shell(*robot);
         }
-        report.teammates.iter_mut().for_each(|(robot, _)| *robot = self.shell(*robot));
+        for (robot, _) in &mut report.teammates {
+            *robot = self.shell(*robot);
+        }
         report.teammates.sort_unstable_by_key(|(robot, _)| robot.number());
         report
     }
@@ -108,7 +119,9 @@ mod tests {
 
     fn numbers(pairs: &[(u8, u8)]) -> Result<RobotNumbers, [RobotId; 2]> {
         let mut given = [None; RobotId::COUNT];
-        pairs.iter().for_each(|(shell, radio)| given[usize::from(*shell)] = Some(id(*radio)));
+        for (shell, radio) in pairs {
+            given[usize::from(*shell)] = Some(id(*radio));
+        }
         RobotNumbers::new(given)
     }
 

@@ -335,7 +335,9 @@ impl HostHeader {
 
     fn numbers(&self) -> Result<RobotNumbers, HeaderError> {
         let mut given = [None; RobotId::COUNT];
-        self.numbers.iter().for_each(|(shell, radio)| given[shell.index()] = Some(*radio));
+        for (shell, radio) in &self.numbers {
+            given[shell.index()] = Some(*radio);
+        }
         RobotNumbers::new(given)
             .map_err(|[one, other]| wrong(format!("numbers: robots {one} and {other} have one radio number")))
     }

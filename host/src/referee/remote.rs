@@ -193,6 +193,24 @@ pub enum RemoteError {
     Refused(String),
 }
 
+impl RemoteError {
+    /// The error as that of a registration.
+    fn of_registration(self) -> Self {
+        match self {
+            Self::Refused(reason) => Self::NotRegistered(reason),
+            other => other,
+        }
+    }
+}
+
+fn open(address: SocketAddr) -> io::Result<TcpStream> {
+    let stream = TcpStream::connect_timeout(&address, REPLY_TIME)?;
+    stream.set_nodelay(true)?;
+    stream.set_read_timeout(Some(REPLY_TIME))?;
+    stream.set_write_timeout(Some(REPLY_TIME))?;
+    Ok(stream)
+}
+
 /// A registered remote control.
 #[derive(Debug)]
 pub struct RemoteControl<S = TcpStream> {
@@ -204,11 +222,7 @@ pub struct RemoteControl<S = TcpStream> {
 impl RemoteControl {
     /// Connects to the controller and registers for `colour`.
     pub fn connect(address: SocketAddr, colour: Colour) -> Result<Self, RemoteError> {
-        let failed = |error| RemoteError::Connection(address.to_string(), error);
-        let stream = TcpStream::connect_timeout(&address, REPLY_TIME).map_err(failed)?;
-        stream.set_nodelay(true).map_err(failed)?;
-        stream.set_read_timeout(Some(REPLY_TIME)).map_err(failed)?;
-        stream.set_write_timeout(Some(REPLY_TIME)).map_err(failed)?;
+        let stream = open(address).map_err(|error| RemoteError::Connection(address.to_string(), error))?;
         Self::register(stream, address.to_string(), colour)
     }
 }
@@ -216,13 +230,9 @@ impl RemoteControl {
 impl<S: Read + Write> RemoteControl<S> {
     fn register(stream: S, address: String, colour: Colour) -> Result<Self, RemoteError> {
         let mut control = Self { stream, reader: FrameReader::new(MESSAGE_MAX), address };
-        let refused = |error| match error {
-            RemoteError::Refused(reason) => RemoteError::NotRegistered(reason),
-            other => other,
-        };
-        control.answer().map_err(refused)?;
+        control.answer().map_err(RemoteError::of_registration)?;
         control.send(&RemoteRegistration { team: team_of(colour) as i32, signature: None })?;
-        control.answer().map_err(refused)?;
+        control.answer().map_err(RemoteError::of_registration)?;
         Ok(control)
     }
 
@@ -241,12 +251,13 @@ impl<S: Read + Write> RemoteControl<S> {
 
     /// The controller's next answer.
     fn answer(&mut self) -> Result<Option<RemoteTeamState>, RemoteError> {
-        let foreign = |text: String| RemoteError::Foreign(text);
         let mut chunk = [0; 4096];
         loop {
-            if let Some(message) = self.reader.next_message().map_err(|error| foreign(error.to_string()))? {
-                let answer =
-                    ControllerToRemote::decode(message).map_err(|error| foreign(error.to_string()))?;
+            if let Some(message) =
+                self.reader.next_message().map_err(|error| RemoteError::Foreign(error.to_string()))?
+            {
+                let answer = ControllerToRemote::decode(message)
+                    .map_err(|error| RemoteError::Foreign(error.to_string()))?;
                 // A message without a reply is one of a newer controller.
                 let Some(reply) = answer.controller_reply else { continue };
                 if reply.status_code() != StatusCode::Rejected {

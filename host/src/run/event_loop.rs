@@ -20,9 +20,9 @@ use ssl::log::MessageKind;
 use ssl::net::{Interfaces, NetSender};
 
 use super::alarms::Alarms;
-use super::inbox::{Inbox, Mail, Source};
+use super::inbox::{Inbox, Mail, RemoteAnswer, Source};
 use super::radio_alarms::RadioAlarms;
-use super::remote_thread::{self, RemoteAnswer};
+use super::remote_thread;
 use super::tracker_input::TrackerInput;
 use super::tuning::{Tuning, keep_learned};
 use super::watch::Watch;

@@ -6,13 +6,13 @@
 //! that is being handled. When a lane is full its oldest entry is dropped and counted. Memory is bounded by
 //! [`LANE_BYTES_MAX`] of vision and as much of the referee; a datagram has as many bytes as UDP carries.
 
-use super::remote_thread::RemoteAnswer;
 use std::collections::VecDeque;
 use std::net::SocketAddr;
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::referee::SenderAddress;
+use crate::referee::remote::RemoteState;
 use protocol::link::Packet;
 
 /// Bytes of waiting datagrams of one kind: 16 of the longest.
@@ -51,6 +51,15 @@ impl Source {
             Self::Tracker => "tracker",
         }
     }
+}
+
+/// What the game controller answers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum RemoteAnswer {
+    /// The team's state; `None`: there is no connection.
+    State(Option<RemoteState>),
+    /// Why a request was not granted.
+    Refused(String),
 }
 
 /// An entry for the event loop.

@@ -1,5 +1,5 @@
-//! `remote_thread`: our team's remote control at the game controller: what the operator asks for goes out, and
-//! the team's state comes back, at least every [`STATUS_EVERY`]. A connection that is lost is opened again.
+//! `remote_thread`: our team's remote control at the game controller: what the operator asks for goes out,
+//! and the team's state comes back, at least every [`STATUS_EVERY`]. A connection that is lost is opened again.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -10,23 +10,14 @@ use std::time::Duration;
 
 use rules::Colour;
 
-use super::inbox::{Inbox, Mail};
+use super::inbox::{Inbox, Mail, RemoteAnswer};
 use super::threads::sleep;
-use crate::referee::remote::{RemoteControl, RemoteError, RemoteRequest, RemoteState};
+use crate::referee::remote::{RemoteControl, RemoteError, RemoteRequest};
 
 /// The state is asked for this often, so that times left are not older.
 const STATUS_EVERY: Duration = Duration::from_millis(500);
 /// Time between two attempts to connect.
 const RETRY_AFTER: Duration = Duration::from_secs(2);
-
-/// What the game controller answers.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum RemoteAnswer {
-    /// The team's state; `None`: there is no connection.
-    State(Option<RemoteState>),
-    /// Why a request was not granted.
-    Refused(String),
-}
 
 /// Talks with the controller until `end` is set.
 pub(super) fn talk(

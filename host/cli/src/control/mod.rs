@@ -147,8 +147,8 @@ pub(crate) struct ControlArgs {
     /// this they may ask for HALT only.
     #[arg(long, conflicts_with = "headless")]
     live_parameters: bool,
-    /// Print our robots at a glance every so many seconds: cameras, radio, battery, faults, and what is not as
-    /// it should be.
+    /// Print our robots at a glance every so many seconds: cameras, radio, battery, faults, and what is not
+    /// as it should be.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     glance: Option<f64>,
     /// End after this number of seconds; else Ctrl-C ends it, and robots are halted first.
