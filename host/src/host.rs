@@ -292,11 +292,11 @@ impl Host {
         self.planned = Some(now);
         let snapshot = self.tracker.snapshot();
         self.world = snapshot.at(now);
-        // One that rolled out of sight is not followed there.
-        self.world.ball = self.world.ball.take().filter(|ball| self.settings.practice.holds(ball.position));
         // Only a visible ball counts as moved: the place of a hidden one is an estimate.
         self.listener.tick(now, visible_place(now, self.world.ball));
         self.remember_ball(now);
+        // One that rolled out of sight is not followed there.
+        self.world.ball = self.world.ball.take().filter(|ball| self.settings.practice.holds(ball.position));
         let us = self.settings.us;
         let game = self.our_game();
         let view = View::of(&self.world, us, &game, self.field(), self.fit(now))

@@ -1,5 +1,5 @@
-//! `practice`: practice on a part of the field. What cameras see outside it is ignored, and no place outside it
-//! is planned. Whole mm, field frame.
+//! `practice`: practice on a part of the field. What cameras see outside it is ignored, and no place outside
+//! it is planned. Whole mm, field frame.
 
 use std::fmt;
 
@@ -53,6 +53,14 @@ impl Rectangle {
         (wide && corners.iter().all(|mm| (-FAR..=FAR).contains(mm))).then_some(Self(corners))
     }
 
+    /// From the words of a key, where it has any; or the key, and what it takes.
+    fn of_key(key: &'static str, text: Option<&str>) -> Result<Option<Self>, (&'static str, String)> {
+        let Some(text) = text else { return Ok(None) };
+        Self::parse(text).map(Some).ok_or_else(|| {
+            (key, format!("`{text}` is no rectangle; two corners in mm as X,Y,X,Y, or +x, -x, +y, -y"))
+        })
+    }
+
     fn holds(self, [x, y]: [i32; 2]) -> bool {
         let [x0, y0, x1, y1] = self.0.map(i32::from);
         (x0..=x1).contains(&x) && (y0..=y1).contains(&y)
@@ -75,26 +83,16 @@ impl fmt::Display for Rectangle {
 impl Practice {
     /// From the words of `team.toml`; or the key, and what it takes.
     pub fn parse(settings: &PracticeSettings) -> Result<Self, (&'static str, String)> {
-        let rectangle = |key: &'static str, text: &Option<String>| {
-            let read = |text: &String| {
-                Rectangle::parse(text).ok_or_else(|| {
-                    (
-                        key,
-                        format!("`{text}` is no rectangle; two corners in mm as X,Y,X,Y, or +x, -x, +y, -y"),
-                    )
-                })
-            };
-            text.as_ref().map(read).transpose()
-        };
         let mut cameras = 0;
         for number in settings.cameras.iter().flat_map(|text| text.split(',')) {
             let known = number.trim().parse::<u32>().ok().filter(|number| *number < u16::BITS);
-            let wrong =
-                || ("practice.cameras", format!("`{number}` is no camera; 0 to 15, with commas between"));
-            cameras |= 1 << known.ok_or_else(wrong)?;
+            cameras |= 1
+                << known.ok_or_else(|| {
+                    ("practice.cameras", format!("`{number}` is no camera; 0 to 15, with commas between"))
+                })?;
         }
-        let within = rectangle("practice.within", &settings.within)?;
-        let without = rectangle("practice.without", &settings.without)?;
+        let within = Rectangle::of_key("practice.within", settings.within.as_deref())?;
+        let without = Rectangle::of_key("practice.without", settings.without.as_deref())?;
         Ok(Self { within, without, cameras })
     }
 
@@ -120,13 +118,16 @@ impl Practice {
         self.within.is_none_or(|area| area.holds(at)) && !self.without.is_some_and(|area| area.holds(at))
     }
 
+    fn holds_mm(&self, x: f32, y: f32) -> bool {
+        self.holds(geometry::Point::new(x * 0.001, y * 0.001))
+    }
+
     /// Takes out of a camera frame what is not practised on.
     pub fn filter(&self, frame: &mut DetectionFrame) {
         let seen = frame.camera_id >= u16::BITS || self.cameras & 1 << frame.camera_id == 0;
-        let keeps = |x: f32, y: f32| seen && self.holds(geometry::Point::new(x * 0.001, y * 0.001));
-        frame.balls.retain(|ball| keeps(ball.x, ball.y));
+        frame.balls.retain(|ball| seen && self.holds_mm(ball.x, ball.y));
         for robots in [&mut frame.robots_blue, &mut frame.robots_yellow] {
-            robots.retain(|robot| keeps(robot.x, robot.y));
+            robots.retain(|robot| seen && self.holds_mm(robot.x, robot.y));
         }
     }
 
@@ -168,10 +169,10 @@ impl Practice {
             WirePoint { y: y1.saturating_add(1), ..inside },
         ];
         let free = beside.into_iter().filter(|at| self.within.is_none_or(|area| area.nearest(*at) == *at));
-        let way = |at: &WirePoint| {
+        let nearest = free.min_by_key(|at| {
             i32::from(at.x).abs_diff(inside.x.into()) + i32::from(at.y).abs_diff(inside.y.into())
-        };
-        *at = free.min_by_key(way).unwrap_or(inside);
+        });
+        *at = nearest.unwrap_or(inside);
     }
 }
 

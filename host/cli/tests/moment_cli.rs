@@ -1,4 +1,4 @@
-//! `moment_cli`: tests of `onetwo play --from FILE --at SECONDS`, on a recording of the league's own programs.
+//! `moment_cli`: tests of `onetwo play --from FILE --at SECONDS`, on a recording of the league's programs.
 
 use std::path::Path;
 use std::process::{Command, Output};

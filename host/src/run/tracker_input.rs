@@ -13,8 +13,8 @@ use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, WrapperPacket};
 use crate::config::TrackerIn;
 use crate::field_geometry::CAMERAS_MAX;
 
-/// A tracker that is silent for longer is replaced by vision: three frames at 60 Hz, after which robots would be
-/// blind. A late frame costs nothing: vision shows the same field.
+/// A tracker that is silent for longer is replaced by vision: three frames at 60 Hz, after which robots would
+/// be blind. A late frame costs nothing: vision shows the same field.
 const SILENT_AFTER: Duration = Duration::millis(50);
 /// It is used (again) once it has come without such a gap for this long: one that stutters must not make the
 /// field jump between two sources with every gap.
@@ -119,18 +119,6 @@ impl TrackerInput {
 
 /// The camera frame that a tracked frame stands for.
 fn vision_of(frame: &TrackedFrame, number: u32) -> WrapperPacket {
-    let robots = |team: TeamColor| {
-        let of_team = frame.robots.iter().filter(move |robot| robot.robot_id.team_color == team as i32);
-        let robots = of_team.map(|robot| DetectionRobot {
-            confidence: robot.visibility.unwrap_or(1.0),
-            robot_id: Some(robot.robot_id.id),
-            x: robot.pos.x * MM,
-            y: robot.pos.y * MM,
-            orientation: Some(robot.orientation),
-            ..DetectionRobot::default()
-        });
-        robots.collect()
-    };
     // The first ball is the one in play; others would compete with it.
     let balls = frame.balls.iter().take(1).map(|ball| DetectionBall {
         confidence: ball.visibility.unwrap_or(1.0),
@@ -144,11 +132,24 @@ fn vision_of(frame: &TrackedFrame, number: u32) -> WrapperPacket {
         t_sent: frame.timestamp,
         camera_id: CAMERA,
         balls: balls.collect(),
-        robots_yellow: robots(TeamColor::Yellow),
-        robots_blue: robots(TeamColor::Blue),
+        robots_yellow: robots_of(frame, TeamColor::Yellow),
+        robots_blue: robots_of(frame, TeamColor::Blue),
         t_capture_camera: None,
     };
     WrapperPacket { detection: Some(detection), ..WrapperPacket::default() }
+}
+
+fn robots_of(frame: &TrackedFrame, team: TeamColor) -> Vec<DetectionRobot> {
+    let of_team = frame.robots.iter().filter(|robot| robot.robot_id.team_color == team as i32);
+    let robots = of_team.map(|robot| DetectionRobot {
+        confidence: robot.visibility.unwrap_or(1.0),
+        robot_id: Some(robot.robot_id.id),
+        x: robot.pos.x * MM,
+        y: robot.pos.y * MM,
+        orientation: Some(robot.orientation),
+        ..DetectionRobot::default()
+    });
+    robots.collect()
 }
 
 #[cfg(test)]

@@ -14,8 +14,8 @@ use rules::Colour;
 use super::STEPS_A_TICK;
 use crate::snapshot::{RobotState, Snapshot};
 
-/// Ticks before the moment in which everything moves as recorded: 0.5 s, 30 frames of the cameras, after which
-/// trackers know positions and velocities.
+/// Ticks before the moment in which everything moves as recorded: 0.5 s, 30 frames of the cameras, after
+/// which trackers know positions and velocities.
 pub const LEAD_IN_TICKS: u32 = 50;
 
 /// A moment of a recorded or running match.
@@ -81,8 +81,8 @@ impl GameStart {
     }
 }
 
-/// The order that keeps a robot on its track; none where it is pushed off it, or at the ball: there it decides
-/// by itself, as the recording knows nothing of this ball.
+/// The order that keeps a robot on its track; none where it is pushed off it, or at the ball: there it
+/// decides by itself, as the recording knows nothing of this ball.
 fn follow(world: &World, who: Who, track: &RobotState) -> Option<Order> {
     let robot = world.robot(who).filter(|robot| robot.present)?;
     let (at, heading) = (robot.pose.position, robot.pose.heading.radians());
@@ -95,9 +95,9 @@ fn follow(world: &World, who: Who, track: &RobotState) -> Option<Order> {
 
 /// The recorded velocity, and what leads back to the track.
 fn order(track: &RobotState, own: &RobotState) -> Order {
-    let along = |axis: usize| track.velocity[axis] + TRACK_GAIN * (track.at[axis] - own.at[axis]);
+    let along = [0, 1].map(|axis| track.velocity[axis] + TRACK_GAIN * (track.at[axis] - own.at[axis]));
     let turn = (Angle::new(track.heading) - Angle::new(own.heading)).radians();
-    let twist = Twist { linear: Vector::new(along(0), along(1)), angular: track.turning + TRACK_GAIN * turn };
+    let twist = Twist { linear: Vector::new(along[0], along[1]), angular: track.turning + TRACK_GAIN * turn };
     Order { drive: Drive::Global(twist), ..Order::default() }
 }
 

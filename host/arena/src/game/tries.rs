@@ -107,18 +107,15 @@ impl FirstLook {
     fn outcome(self, report: &GameReport) -> TryOutcome {
         let GameReport { seed, score, metrics, trace_hash, .. } = report;
         let before = self.score.unwrap_or_default();
-        let of_both = |value: fn(&super::TeamReport) -> u32| PerTeam {
-            blue: value(&metrics.blue),
-            yellow: value(&metrics.yellow),
-        };
+        let PerTeam { blue, yellow } = metrics;
         TryOutcome {
             seed: *seed,
             goals: PerTeam {
                 blue: score.blue.saturating_sub(before[0]),
                 yellow: score.yellow.saturating_sub(before[1]),
             },
-            shots: of_both(|team| team.shots),
-            passes: of_both(|team| team.passes),
+            shots: PerTeam { blue: blue.shots, yellow: yellow.shots },
+            passes: PerTeam { blue: blue.passes, yellow: yellow.passes },
             first_touch: self.first_touch.map(Colour::label),
             lost_s: self.lost_s,
             first_shot: self.first_shot,

@@ -69,21 +69,18 @@ pub(super) fn run_tries(config: &GameConfig, count: u32, json: bool) -> Result<E
         return Ok(ExitCode::SUCCESS);
     }
     let table = Table::of_texts("seed | goals blue : yellow | shots | passes | ball | first shot | stopped");
-    let goals = |of: fn(&TryOutcome) -> u32| outcomes.iter().map(of).sum::<u32>();
     print_text(&format!(
         "{}\n{} tries of {} s: {} goals of blue, {} of yellow\n",
         table.with_rows(outcomes.iter().map(line)).markdown(),
         outcomes.len(),
         config.duration_s,
-        goals(|outcome| outcome.goals.blue),
-        goals(|outcome| outcome.goals.yellow)
+        outcomes.iter().map(|outcome| outcome.goals.blue).sum::<u32>(),
+        outcomes.iter().map(|outcome| outcome.goals.yellow).sum::<u32>()
     ))?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn line(outcome: &TryOutcome) -> Row {
-    let pair = |values: &PerTeam<u32>| format!("{} : {}", values.blue, values.yellow);
-    let none = || "none".to_owned();
     let ball = outcome.first_touch.map(|team| match outcome.lost_s {
         Some(lost) => format!("{team} loses it at {lost:.1} s"),
         None => format!("{team} keeps it"),
@@ -95,8 +92,12 @@ fn line(outcome: &TryOutcome) -> Row {
         pair(&outcome.goals),
         pair(&outcome.shots),
         pair(&outcome.passes),
-        ball.unwrap_or_else(none),
-        shot.unwrap_or_else(none),
+        ball.unwrap_or_else(|| "none".to_owned()),
+        shot.unwrap_or_else(|| "none".to_owned()),
         stopped.unwrap_or_else(|| "no".to_owned()),
     ]
+}
+
+fn pair(values: &PerTeam<u32>) -> String {
+    format!("{} : {}", values.blue, values.yellow)
 }

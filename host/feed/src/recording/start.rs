@@ -1,5 +1,5 @@
-//! `start`: the moment of a recording that a simulated match starts from: field by our tracker, referee by its
-//! packets. s since the recording's start; m, m/s, rad, field frame.
+//! `start`: the moment of a recording that a simulated match starts from: field by our tracker, referee by
+//! its packets. s since the recording's start; m, m/s, rad, field frame.
 
 use std::path::Path;
 
@@ -113,9 +113,8 @@ impl Reader {
     /// Why no match of the league can start here, if so.
     fn check(&self, world: &World, at: Instant) -> Result<(), RecordedError> {
         let at_s = at.0 as f64 * 1e-6;
-        let refuse = |reason: String| Err(RecordedError::NoStart(reason));
         let Some(announced) = self.tracker.geometry().field() else {
-            return refuse(format!(
+            return refused(format!(
                 "no geometry of the field until {at_s} s: take a later second, or a log with vision"
             ));
         };
@@ -125,23 +124,23 @@ impl Reader {
                 || "no league that is simulated has it".to_owned(),
                 |fits| format!("add --league {}", fits.name()),
             );
-            return refuse(format!(
+            return refused(format!(
                 "its field is {length:.1} × {width:.1} m, not that of {}: {fits}",
                 self.league.name()
             ));
         }
         if world.ball.is_none() || world.robots().next().is_none() {
             let what = if world.ball.is_none() { "ball" } else { "robot" };
-            return refuse(format!("vision sees no {what} at {at_s} s: take another second"));
+            return refused(format!("vision sees no {what} at {at_s} s: take another second"));
         }
         if self.newest.as_ref().is_some_and(|newest| newest.stage == ssl::referee::Stage::PostGame as i32) {
-            return refuse(format!("the match is over at {at_s} s: take an earlier second"));
+            return refused(format!("the match is over at {at_s} s: take an earlier second"));
         }
         let most = self.league.limits().map_or(RobotId::COUNT, |limits| limits.robots as usize);
         for team in [Colour::Blue, Colour::Yellow] {
             let on_field = world.team(team).filter(|robot| plays(announced, robot)).count();
             if on_field > most {
-                return refuse(format!(
+                return refused(format!(
                     "{on_field} {} robots are on the field at {at_s} s, {} allows {most}: take another second or --league",
                     team.label(),
                     self.league.name()
@@ -167,7 +166,7 @@ impl Reader {
             },
             hops: u32::from(ball.bounced),
         });
-        let before = || self.frames.last().map_or_else(BallState::default, |before| before.ball);
+        let before = self.frames.last().map_or_else(BallState::default, |before| before.ball);
         let robots = world.robots().filter(|robot| plays(&field, robot)).map(|robot| RobotState {
             blue: robot.who.colour == Colour::Blue,
             id: robot.who.id.number(),
@@ -177,7 +176,7 @@ impl Reader {
             turning: robot.angular,
         });
         let (league, t) = (self.league.name().to_owned(), at.0 as f64 * 1e-6);
-        Snapshot { league, t, ball: ball.unwrap_or_else(before), robots: robots.collect() }
+        Snapshot { league, t, ball: ball.unwrap_or(before), robots: robots.collect() }
     }
 
     /// Whether blue defends +x: by the referee, else by where the teams stand.
@@ -189,6 +188,10 @@ impl Reader {
             robots.iter().map(|robot| if robot.blue { robot.at[0] } else { -robot.at[0] }).sum::<f32>() > 0.0
         })
     }
+}
+
+fn refused(reason: String) -> Result<(), RecordedError> {
+    Err(RecordedError::NoStart(reason))
 }
 
 /// Whether a robot is on the field, and not beside it with those that wait.
@@ -229,8 +232,9 @@ mod tests {
             game.step(&mut NoWatcher).expect("a tick");
         }
         let ball = Point::new(moment.ball.at[0], moment.ball.at[1]);
-        // The tick after the moment is played: 10 ms at 1 m/s.
-        assert!(game.world().ball.position.distance(ball) < 0.03);
+        // The tick after the moment is played: 10 ms at 1 m/s. The tracked ball lies within a robot's outline,
+        // which pushes it out by its radius.
+        assert!(game.world().ball.position.distance(ball) < 0.1);
         for robot in &moment.robots {
             let at = Point::new(robot.at[0], robot.at[1]);
             let who = robot.who().expect("a robot");

@@ -8,8 +8,6 @@ use casebase::Symmetry;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
-use super::play_on::PlayOnPlan;
-
 /// A request. Texts are those of case files.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
@@ -134,10 +132,21 @@ pub(super) struct TriesPlan {
     pub(super) seed: u64,
 }
 
+/// Tries of a moment that are to be played.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PlayOnPlan {
+    /// The moment, s of a recording.
+    pub(super) at: f64,
+    #[serde(deserialize_with = "trials")]
+    pub(super) tries: u32,
+    pub(super) seed: u64,
+}
+
 /// Most attempts of a rehearsal.
 const TRIALS_MAX: u32 = 500;
 
-pub(super) fn trials<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+fn trials<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
     let trials = u32::deserialize(deserializer)?;
     if (1..=TRIALS_MAX).contains(&trials) {
         return Ok(trials);

@@ -6,24 +6,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use arena::game::{GameConfig, TryOutcome, tries};
-use serde::Deserialize;
 use serde_json::{Value, json};
 
+use super::asked::PlayOnPlan;
 use crate::MomentSource;
 
 /// Length of a try, simulated s: an attack, and the counter-attack after it.
 const TRY_S: f64 = 20.0;
-
-/// What is to be played on.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct PlayOnPlan {
-    /// The moment, s of a recording.
-    at: f64,
-    #[serde(deserialize_with = "super::asked::trials")]
-    tries: u32,
-    seed: u64,
-}
 
 /// Tries that are being played, or were.
 pub(super) struct PlayOn {
@@ -56,15 +45,15 @@ impl PlayOn {
             matches!(source, MomentSource::Match(_)).then(|| source.config(plan.at, TRY_S)).transpose()?;
         let play_on = Arc::new(Self { plan, stopped, course });
         let played = play_on.clone();
-        let work = move || {
+        let worker = thread::Builder::new().name("play on".to_owned());
+        let spawned = worker.spawn(move || {
             let _end = End(&played);
             let config = config.map_or_else(|| source.config(played.plan.at, TRY_S), Ok);
             if let Err(error) = config.and_then(|config| played.play(&config)) {
                 played.course().error = Some(error);
             }
-        };
-        let worker = thread::Builder::new().name("play on".to_owned());
-        worker.spawn(work).map_err(|error| format!("no thread for the tries: {error}"))?;
+        });
+        spawned.map_err(|error| format!("no thread for the tries: {error}"))?;
         Ok(play_on)
     }
 
