@@ -28,6 +28,7 @@ mod space;
 mod steps;
 mod tasks;
 mod trial_cost;
+mod wheels;
 
 use std::env;
 use std::process::ExitCode;

@@ -68,14 +68,14 @@ fn code_of(page: &str) -> Option<&str> {
 }
 
 /// The virtual environment with what building and testing need.
-struct Environment {
+pub(crate) struct Environment {
     target: PathBuf,
     programs: PathBuf,
 }
 
 impl Environment {
     /// Makes it where it is missing.
-    fn ensure(context: &Context) -> Result<Self, Failure> {
+    pub(crate) fn ensure(context: &Context) -> Result<Self, Failure> {
         let target = firmware_build::target_dir(context.root());
         let directory = target.join("python-venv");
         let programs = directory.join(if cfg!(windows) { "Scripts" } else { "bin" });
@@ -94,7 +94,7 @@ impl Environment {
     }
 
     /// Its Python, at the workspace's root.
-    fn python(&self, context: &Context) -> Command {
+    pub(crate) fn python(&self, context: &Context) -> Command {
         let mut command = Command::new(self.programs.join("python"));
         command.current_dir(context.root());
         self.in_it(&mut command);
@@ -127,7 +127,8 @@ fn fit_python() -> Option<&'static str> {
     NAMES.into_iter().find(|name| is_fit(Path::new(name)))
 }
 
-fn is_fit(python: &Path) -> bool {
+/// Whether it is a Python that the package runs on, and makes environments.
+pub(crate) fn is_fit(python: &Path) -> bool {
     let mut question = Command::new(python);
     question.args(["-c", "import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))"]);
     question.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());

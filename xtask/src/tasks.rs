@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use crate::context::{Context, Failure, run};
 use crate::{
     bench, budgets, cost, docs, emulate, evaluation, example_cost, game_cost, page, pictures, release,
-    trial_cost,
+    trial_cost, wheels,
 };
 
 /// An xtask command other than `test`.
@@ -89,7 +89,7 @@ const fn handed_on(
     Task { name, takes, what, run, free: true }
 }
 
-static TASKS: [Task; 23] = [
+static TASKS: [Task; 24] = [
     handed_on(
         "soak",
         "[--hours N [--dir DIR] [--jobs J] [--only NAME] | --repeat NAME:RECIPE]",
@@ -121,6 +121,13 @@ static TASKS: [Task; 23] = [
         "build archives for machines without a toolchain: a static program for x86-64 and aarch64 Linux, the robots' images,\n\
         \x20                manual pages and completions; they lie in target/release-archives",
         release::build,
+    ),
+    handed_on(
+        "wheels",
+        "[x86_64|aarch64]...",
+        "build the Python package's manylinux wheels and test this machine's in empty environments; they lie in\n\
+        \x20                target/wheels-manylinux",
+        wheels::build,
     ),
     handed_on(
         "swarm",

@@ -51,12 +51,12 @@ pub struct Similarity {
 /// A problem of which parts may be unknown.
 #[derive(Clone, Debug)]
 pub struct PartialProblem {
-    /// Its known parts; the ball of each case where it is unknown.
-    pub problem: Problem,
-    /// Whether the goal, and so the cases, are given.
-    pub defending_known: bool,
-    /// Whether the ball is given.
-    pub ball_known: bool,
+    /// Its known parts, anything where they are unknown.
+    problem: Problem,
+    /// The ball, if it is given; else the ball of each case counts.
+    pub ball: Option<PointMm>,
+    /// The goal, and so the cases, if it is given.
+    pub defending: Option<GoalEnd>,
     /// Whether teammates are given.
     pub teammates_known: bool,
     /// Whether opponents are given.
@@ -107,7 +107,7 @@ impl Similarity {
 
     /// The similarity of a case to a problem.
     fn of(&self, case: &Case<'_>, asked: &PartialProblem, settings: &RetrievalSettings) -> Ranked {
-        let terms = if asked.ball_known {
+        let terms = if asked.ball.is_some() {
             casebase::terms(case, &asked.problem, settings)
         } else {
             let problem = Problem { ball: case.ball(), ..asked.problem.clone() };
@@ -115,7 +115,7 @@ impl Similarity {
         };
         let mut players = [-1; PLAYERS];
         for (to, player) in players.iter_mut().zip(&terms.players) {
-            *to = player.number() as i8;
+            *to = i8::try_from(player.number()).unwrap_or(-1);
         }
         let found = self.locals(case, asked, settings, &terms);
         let (mut sum, mut weights) = (0.0, 0.0);
@@ -148,12 +148,10 @@ impl Similarity {
             Presence::Excluded => 1.0 - scopes.at(*distance),
             Presence::Preferred | Presence::Required => scopes.at(*distance),
         });
-        let mean = |values: &mut dyn Iterator<Item = f32>, count: usize| values.sum::<f32>() / count as f32;
         [
-            asked.ball_known.then(|| ball.at(terms.ball)),
-            asked.teammates_known.then(|| mean(&mut { reached }, case.teammates())),
-            (asked.opponents_known && !terms.scopes.is_empty())
-                .then(|| mean(&mut { met }, terms.scopes.len())),
+            asked.ball.map(|_| ball.at(terms.ball)),
+            asked.teammates_known.then(|| mean(reached, case.teammates())),
+            (asked.opponents_known && !terms.scopes.is_empty()).then(|| mean(met, terms.scopes.len())),
             asked.opponents_known.then(|| 1.0 - path.at(terms.path)),
         ]
     }
@@ -170,7 +168,7 @@ impl PartialProblem {
     ) -> Vec<Ranked> {
         let mut ranked: Vec<Ranked> = base
             .cases()
-            .filter(|case| !self.defending_known || case.defending() == self.problem.defending)
+            .filter(|case| self.defending.is_none_or(|goal| goal == case.defending()))
             .filter(|case| self.left_out != Some(case.authored()))
             .map(|case| similarity.of(&case, self, settings))
             .collect();
@@ -179,9 +177,10 @@ impl PartialProblem {
         ranked
     }
 
-    /// Whether every part is known, as retrieval needs it.
-    pub fn is_whole(&self) -> bool {
-        self.defending_known && self.ball_known && self.teammates_known && self.opponents_known
+    /// The problem where every part is known, as retrieval needs it.
+    pub fn whole(self) -> Option<Problem> {
+        let known = self.ball.is_some() && self.defending.is_some();
+        (known && self.teammates_known && self.opponents_known).then_some(self.problem)
     }
 }
 
@@ -242,16 +241,15 @@ impl Arrays {
 
     /// The problem of that number.
     pub fn problem(&self, number: usize) -> PartialProblem {
-        let row = |values: &Option<Vec<f64>>| -> Vec<Option<PointMm>> {
-            values.as_deref().map_or(Vec::new(), |values| self.row(values, number).collect())
-        };
+        let [mates, others] =
+            [&self.teammates, &self.opponents].map(|side| side.as_deref().unwrap_or_default());
         let ball = point([self.ball[2 * number], self.ball[2 * number + 1]]);
         let defending = match self.defending[number] {
             0.0 => Some(GoalEnd::Negative),
             1.0 => Some(GoalEnd::Positive),
             _ => None,
         };
-        let teammates = RobotId::all().zip(row(&self.teammates));
+        let teammates = RobotId::all().zip(self.row(mates, number));
         let teammates = teammates.filter_map(|(id, at)| Some((id, at?)));
         let left_out = self.left_out.as_ref().map(|numbers| numbers[number]).filter(|case| *case >= 0.0);
         PartialProblem {
@@ -259,15 +257,19 @@ impl Arrays {
                 ball: ball.unwrap_or(PointMm::new(0, 0)),
                 defending: defending.unwrap_or(GoalEnd::Negative),
                 teammates: teammates.collect(),
-                opponents: row(&self.opponents).into_iter().flatten().collect(),
+                opponents: self.row(others, number).flatten().collect(),
             },
-            defending_known: defending.is_some(),
-            ball_known: ball.is_some(),
+            ball,
+            defending,
             teammates_known: self.teammates.is_some(),
             opponents_known: self.opponents.is_some(),
             left_out: left_out.map(|case| case as usize),
         }
     }
+}
+
+fn mean(values: impl Iterator<Item = f32>, count: usize) -> f32 {
+    values.sum::<f32>() / count as f32
 }
 
 /// The rounded place; `None` where a coordinate is not a number.

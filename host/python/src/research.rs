@@ -66,16 +66,17 @@ pub fn _rank<'py>(
     let similarity = similarity_of(weights, local, &unknown)?;
     let settings = chosen(settings)?.settings;
     let ranked: Vec<Vec<Ranked>> = py.detach(|| {
-        let rank = |number| arrays.problem(number).rank(&base, &similarity, &settings, k);
-        Ok::<_, PyErr>(pool(threads)?.install(|| (0..arrays.len()).into_par_iter().map(rank).collect()))
+        let numbers = (0..arrays.len()).into_par_iter();
+        let ranked = numbers.map(|number| arrays.problem(number).rank(&base, &similarity, &settings, k));
+        Ok::<_, PyErr>(pool(threads)?.install(|| ranked.collect()))
     })?;
-    let rows = || ranked.iter().flat_map(|row| (0..k).map(|n| row.get(n)));
+    let rows: Vec<_> = ranked.iter().flat_map(|row| (0..k).map(move |n| row.get(n))).collect();
     let nan = [f32::NAN; TERMS.len()];
-    let ids: Vec<i32> = rows().map(|row| row.map_or(-1, |row| i32::from(row.id))).collect();
-    let similarities: Vec<f32> = rows().map(|row| row.map_or(f32::NAN, |row| row.similarity)).collect();
-    let terms: Vec<f32> = rows().flat_map(|row| row.map_or(nan, |row| row.terms)).collect();
+    let ids: Vec<i32> = rows.iter().map(|row| row.map_or(-1, |row| i32::from(row.id))).collect();
+    let similarities: Vec<f32> = rows.iter().map(|row| row.map_or(f32::NAN, |row| row.similarity)).collect();
+    let terms: Vec<f32> = rows.iter().flat_map(|row| row.map_or(nan, |row| row.terms)).collect();
     let players: Vec<i8> =
-        rows().flat_map(|row| row.map_or([-1; casebase::TEAMMATES_MAX], |row| row.players)).collect();
+        rows.iter().flat_map(|row| row.map_or([-1; casebase::TEAMMATES_MAX], |row| row.players)).collect();
     write("ids", &into[0], &ids)?;
     write("similarities", &into[1], &similarities)?;
     write("terms", &into[2], &terms)?;
@@ -96,10 +97,10 @@ pub fn _retrieve<'py>(
     let settings = chosen(settings)?.settings;
     let problems = whole(&arrays)?;
     let ids: Vec<i32> = py.detach(|| {
-        let ask = |problem: &Problem| {
+        let answers = problems.par_iter().map(|problem| {
             casebase::retrieve_best(&base, problem, &settings).map_or(-1, |found| i32::from(found.case.0))
-        };
-        Ok::<_, PyErr>(pool(threads)?.install(|| problems.par_iter().map(ask).collect()))
+        });
+        Ok::<_, PyErr>(pool(threads)?.install(|| answers.collect()))
     })?;
     write("ids", into, &ids)
 }
@@ -121,18 +122,16 @@ pub fn _coverage<'py>(
         let base = handle.lasting_base();
         let cells = Cells::new(base.field(), Cells::suitable_edge_mm(base.field()));
         let survey = Survey::new(base, &settings, cells.map_err(refused)?).map_err(refused)?;
-        let sampler = build_without_warnings(&files_of(handle)?).map_err(findings)?.sampler(seed);
+        let source = build_without_warnings(&files_of(handle)?).map_err(findings)?.sampler(seed);
         let number_of = given.as_ref().map_or(samples, Vec::len);
-        let block = |first: usize| {
+        let blocks = (0..number_of.div_ceil(BLOCK)).into_par_iter().map(|first| {
             let numbers = first * BLOCK..number_of.min((first + 1) * BLOCK);
             survey.over(numbers.map(|n| {
                 let problem = given.as_ref().and_then(|problems| problems.get(n)).cloned();
-                (n as u64, problem.unwrap_or_else(|| sampler.problem(n as u64)))
+                (n as u64, problem.unwrap_or_else(|| source.problem(n as u64)))
             }))
-        };
-        let blocks = (0..number_of.div_ceil(BLOCK)).into_par_iter();
-        let counters =
-            pool(threads)?.install(|| blocks.map(block).reduce(|| survey.empty(), Counters::merge));
+        });
+        let counters = pool(threads)?.install(|| blocks.reduce(|| survey.empty(), Counters::merge));
         Ok::<_, PyErr>(report(handle, &counters))
     })?;
     from_json(py, &report)
@@ -184,10 +183,6 @@ pub fn _learn<'py>(
     #[pyo3(from_py_with = argument::threads)] threads: usize,
 ) -> PyResult<Report<'py>> {
     let (py, handle) = (library.py(), handle_or_default(Some(library.as_any()))?);
-    let kind = |label: &String| {
-        let known = || Kind::ALL.map(Kind::label).join(", ");
-        Kind::from_label(label).ok_or_else(|| refused(format!("only {label:?}: take some of {}", known())))
-    };
     if !(LEAST_ERROR_RATE..=0.5).contains(&error_rate) {
         return Err(refused(format!("error_rate {error_rate}: take {LEAST_ERROR_RATE} to 0.5")));
     }
@@ -195,7 +190,7 @@ pub fn _learn<'py>(
     let settings = LearnSettings {
         seed,
         budget,
-        kinds: kinds.iter().map(kind).collect::<PyResult<_>>()?,
+        kinds: kinds.iter().map(|label| kind_of(label)).collect::<PyResult<_>>()?,
         worlds: worlds.ok_or_else(|| refused("profile: take simulated, robots or both"))?,
         error_rate,
         tries: TRIES,
@@ -254,22 +249,27 @@ fn texts<'py>(py: Python<'py>, files: &Files) -> PyResult<Bound<'py, PyDict>> {
     Ok(found)
 }
 
+/// An array's numbers.
+fn numbers(name: &str, from: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let buffer = PyBuffer::<f64>::get(from);
+    buffer.map_err(|_| refused(format!("{name}: take an array of float64")))?.to_vec(from.py())
+}
+
+/// A kind of changes by its label.
+fn kind_of(label: &str) -> PyResult<Kind> {
+    let known = Kind::ALL.map(Kind::label).join(", ");
+    Kind::from_label(label).ok_or_else(|| refused(format!("only {label:?}: take some of {known}")))
+}
+
 /// Arrays of problems, checked.
 fn arrays_of(columns: &Columns<'_>) -> PyResult<Arrays> {
-    let read = |name: &str, from: &Bound<'_, PyAny>| -> PyResult<Vec<f64>> {
-        let buffer =
-            PyBuffer::<f64>::get(from).map_err(|_| refused(format!("{name}: take an array of float64")))?;
-        buffer.to_vec(from.py())
-    };
-    let optional =
-        |name: &str, from: &Option<Bound<'_, PyAny>>| from.as_ref().map(|from| read(name, from)).transpose();
     let (ball, defending, teammates, opponents, left_out) = columns;
     let arrays = Arrays {
-        ball: read("ball", ball)?,
-        defending: read("defending", defending)?,
-        teammates: optional("teammates", teammates)?,
-        opponents: optional("opponents", opponents)?,
-        left_out: optional("left_out", left_out)?,
+        ball: numbers("ball", ball)?,
+        defending: numbers("defending", defending)?,
+        teammates: teammates.as_ref().map(|from| numbers("teammates", from)).transpose()?,
+        opponents: opponents.as_ref().map(|from| numbers("opponents", from)).transpose()?,
+        left_out: left_out.as_ref().map(|from| numbers("left_out", from)).transpose()?,
     };
     arrays.check().map_err(refused)?;
     Ok(arrays)
@@ -277,15 +277,14 @@ fn arrays_of(columns: &Columns<'_>) -> PyResult<Arrays> {
 
 /// The problems, if every part of each is known.
 fn whole(arrays: &Arrays) -> PyResult<Vec<Problem>> {
-    let part = |number: usize| {
-        let asked = arrays.problem(number);
-        asked.is_whole().then_some(asked.problem).ok_or_else(|| {
+    let problems = (0..arrays.len()).map(|number| {
+        arrays.problem(number).whole().ok_or_else(|| {
             refused(format!(
                 "problems: number {number} is not known in all parts, as retrieval needs it; ask rank"
             ))
         })
-    };
-    (0..arrays.len()).map(part).collect()
+    });
+    problems.collect()
 }
 
 fn similarity_of(
@@ -312,12 +311,12 @@ fn similarity_of(
 /// A dict of terms: the number of each, and its value.
 fn terms<'py>(what: &str, given: &Bound<'py, PyAny>) -> PyResult<Vec<(usize, Bound<'py, PyAny>)>> {
     let given = argument::dict(what, Some(given))?;
-    let place = |(name, value): (Bound<'py, PyAny>, _)| {
+    let places = given.iter().flatten().map(|(name, value)| {
         let (name, known) = (name.str()?.to_string(), TERMS.join(", "));
         let at = TERMS.iter().position(|term| *term == name);
         Ok((at.ok_or_else(|| refused(format!("{what}: no term {name:?}; there are {known}")))?, value))
-    };
-    given.iter().flatten().map(place).collect()
+    });
+    places.collect()
 }
 
 /// Value of a caller's local similarity at a sampled distance.

@@ -332,8 +332,10 @@ pub fn pixels_of<'py>(
 
 fn width_of(width: u32) -> PyResult<u32> {
     let (least, most) = (picture::WIDTHS.start(), picture::WIDTHS.end());
-    let refusal = || refused(format!("width {width}: take {least} to {most} pixels"));
-    picture::WIDTHS.contains(&width).then_some(width).ok_or_else(refusal)
+    picture::WIDTHS
+        .contains(&width)
+        .then_some(width)
+        .ok_or_else(|| refused(format!("width {width}: take {least} to {most} pixels")))
 }
 
 /// A simulator read from its pickle.
