@@ -1,5 +1,6 @@
 //! `remote_thread`: our team's remote control at the game controller: what the operator asks for goes out,
-//! and the team's state comes back, at least every [`STATUS_EVERY`]. A connection that is lost is opened again.
+//! and the team's state comes back, at least every [`STATUS_EVERY`]. A connection that is lost is opened
+//! again.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
