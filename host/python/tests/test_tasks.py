@@ -3,6 +3,7 @@
 import copy
 import json
 import math
+import os
 import pickle
 import subprocess
 import sys
@@ -19,6 +20,8 @@ import onetwo
 import onetwo.env
 from onetwo.parallel import TaskParallelEnv
 
+# Gymnasium's checker renders in every mode: a window without a screen.
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 TASKS = list(onetwo.env.TASKS.values())
 MATCHES = ["3v3", "6v6"]
 SINGLE = [task for task in TASKS if task not in MATCHES]
