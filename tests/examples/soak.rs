@@ -52,7 +52,7 @@ impl Asked {
             let value = arguments.next()?;
             match flag.as_str() {
                 "--hours" => {
-                    asked.hours = value.parse().ok().filter(|hours| (0.0..10_000.0).contains(hours))?
+                    asked.hours = value.parse().ok().filter(|hours| (0.0..10_000.0).contains(hours))?;
                 }
                 "--dir" => asked.directory = value.into(),
                 "--jobs" => asked.jobs = value.parse().ok().filter(|jobs| (1..=1024).contains(jobs))?,

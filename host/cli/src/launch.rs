@@ -194,9 +194,9 @@ impl Programs {
 
     /// The first that has ended.
     fn ended(&mut self) -> Option<Ended> {
-        self.0.iter_mut().find_map(|(name, child)| {
-            child.try_wait().ok().flatten().map(|status| Ended { name: *name, status })
-        })
+        self.0
+            .iter_mut()
+            .find_map(|(name, child)| child.try_wait().ok().flatten().map(|status| Ended { name, status }))
     }
 
     /// Asks all that run to end in order, as Ctrl-C does.

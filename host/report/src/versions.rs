@@ -114,6 +114,7 @@ const NOTE: &str = "Matches of equal number are compared in pairs (paired t test
 
 #[cfg(test)]
 mod tests {
+    use hil_sim::small_size::worlds::WorldPlan;
     use study::matches::{MatchPlan, MatchTeam, compare_matches};
 
     use super::*;
@@ -138,7 +139,7 @@ mod tests {
         let plan = MatchPlan {
             seed: 1,
             league: "division-b".into(),
-            world: Default::default(),
+            world: WorldPlan::default(),
             duration_s: 1.0,
             pairings: MatchPlan::against(MatchTeam::strategy(), &[MatchTeam::round_1()]),
             matches: 4,

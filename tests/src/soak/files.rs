@@ -67,6 +67,7 @@ fn below(directory: &Path, ending: &str) -> Result<Vec<Vec<u8>>, String> {
     places.iter().map(read).collect()
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "the form of every target")]
 pub(super) fn play(material: &Material, recipe: &[u64], labels: &mut Labels) -> Result<u64, String> {
     let kinds: Vec<&Kind> = material.files.kinds.iter().filter(|kind| !kind.examples.is_empty()).collect();
     let mut chance = Stream::new(recipe.first().copied().unwrap_or_default(), "soak file");

@@ -159,7 +159,7 @@ fn mutate(part: &mut Vec<Record>, chance: &mut Stream) {
             0 => drop(part.drain(at..part.len().min(at + chance.whole(1, 200) as usize))),
             1 => {
                 let pause = chance.whole(0, 3_000_000);
-                part[at..].iter_mut().for_each(|later| later.at = later.at + Duration(u64::from(pause)));
+                part[at..].iter_mut().for_each(|later| later.at += Duration(u64::from(pause)));
             }
             2 => {
                 let to = (at + chance.whole(1, 100) as usize).min(part.len() - 1);
@@ -220,7 +220,7 @@ fn refereed(mut packet: Referee, chance: &mut Stream) -> Referee {
         5 => packet.blue_team_on_positive_half = Some(chance.chance(0.5)),
         _ => {
             packet.command_timestamp =
-                packet.command_timestamp.wrapping_add(u64::from(chance.whole(0, 10_000_000)))
+                packet.command_timestamp.wrapping_add(u64::from(chance.whole(0, 10_000_000)));
         }
     }
     packet
