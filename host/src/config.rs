@@ -42,6 +42,7 @@
 //! ```
 
 mod change;
+mod numbers;
 pub mod parameters;
 mod text;
 mod tracker_in;
@@ -62,6 +63,7 @@ use crate::strategy::Tactics;
 
 pub use crate::practice::PracticeSettings;
 pub use change::ParameterChange;
+pub use numbers::RadioNumber;
 pub(crate) use parameters::KICK_RANGE;
 pub use tracker_in::TrackerIn;
 
@@ -163,17 +165,6 @@ pub struct Calibration {
     /// Latency from an order to its motion, ms: written by `control --learned`, not used yet.
     #[serde(default)]
     pub latency_ms: Option<f32>,
-}
-
-/// A robot's number on its shell, and the one that it was flashed with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RadioNumber {
-    /// Number on the shell, 0–15.
-    pub robot: u8,
-    /// Number that it was flashed with, 0–15; none: as if the entry were left out.
-    #[serde(default)]
-    pub radio: Option<u8>,
 }
 
 fn one() -> f32 {
@@ -346,7 +337,7 @@ impl TeamSettings {
             game_controller: self.game_controller,
             strategy: self.strategy,
             kick,
-            numbers: numbers(&self.numbers)?,
+            numbers: numbers::parse(&self.numbers)?,
             roll,
             limits: self.limits.checked()?,
             tactics: tactics.map_err(|description| error("tactics", description))?,
@@ -379,18 +370,6 @@ fn on_silence(label: &str) -> Result<OnSilence, ConfigError> {
             "referee_silence",
             format!("`{label}` is none; halt (after 2 s) or go-on (by its last command)"),
         )
-    })
-}
-
-fn numbers(entries: &[RadioNumber]) -> Result<RobotNumbers, ConfigError> {
-    let mut given = [None; RobotId::COUNT];
-    for entry in entries {
-        let shell = robot_id("numbers.robot", entry.robot)?;
-        given[shell.index()] = entry.radio.map(|radio| robot_id(parameters::RADIO.key, radio)).transpose()?;
-    }
-    RobotNumbers::new(given).map_err(|[one, other]| {
-        let description = format!("robots {one} and {other} are given the same; give each another");
-        error(parameters::RADIO.key, description)
     })
 }
 

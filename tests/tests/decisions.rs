@@ -250,7 +250,7 @@ fn replayed(trace: &Path) -> [BTreeMap<CycleId, DecisionReport>; 2] {
 fn matches(seconds: f64) {
     let cases = Cases::of("division-b", case_library::division_b());
     let mut compared = Compared::default();
-    for seed in [5, 11, 23] {
+    for seed in [5, 11, 2] {
         let mut config = GameConfig::new(League::DivisionB, seed, seconds);
         // Who plays by the rated list decides on cases more rarely.
         config.teams.iter_mut().for_each(|team| team.tactics = Tactics::ROUND_1);

@@ -92,10 +92,10 @@ fn speed_and_acceleration_limits_slow_the_team_that_sets_them() {
 
 #[test]
 fn a_kick_gain_of_2_halves_the_ordered_speed() {
-    let default = blue_and_yellow(120.0, &[]);
+    let default = blue_and_yellow(240.0, &[]);
     let kicks: Vec<String> =
         (0..6).map(|n| format!(r#"{{"key":"calibration.kick","robot":{n},"value":2.0}}"#)).collect();
-    let changed = blue_and_yellow(120.0, &kicks.iter().map(String::as_str).collect::<Vec<_>>());
+    let changed = blue_and_yellow(240.0, &kicks.iter().map(String::as_str).collect::<Vec<_>>());
     let [_, blue_default] = default;
     let [yellow, blue] = changed;
     let counts = [&blue_default, &blue, &yellow].map(|team| team.kicks.len());

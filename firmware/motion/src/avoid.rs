@@ -80,9 +80,9 @@ pub struct Course<'o, F> {
     pub obstacles: &'o [Obstacle<F>],
     /// Where its centre must stay, such as the field surface less the robot's radius; any convex shape.
     pub within: Option<Shape<F>>,
-    /// Whether the robot goes straight on as far as it can brake where not even a first corner is found and no
-    /// region is first on the straight path: a robot that comes is not passed by waiting for it. Where many
-    /// leave a region at once they would hold each other up.
+    /// Whether the robot goes straight on as far as it can brake where not even a first corner is found and
+    /// no region is first on the straight path: a robot that comes is not passed by waiting for it. Where
+    /// many leave a region at once they would hold each other up.
     pub straight_on: bool,
     /// Time until the next plan, s, at most 1.
     pub step: f32,

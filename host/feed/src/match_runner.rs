@@ -12,7 +12,6 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use arena::CaseNames;
-use arena::cases::LibraryHandle;
 use arena::game::{Game, GameConfig, GameError, GameReport, TICK_US, Watcher, Watchers};
 use foreign::{excerpt, printable};
 use geometry::Point;
@@ -24,7 +23,7 @@ use rules::Colour;
 use rules::state::RefereeCommand;
 
 use self::kick_test::KickTests;
-use self::situation::{Sides, of_case};
+use self::situation::situate;
 use super::gauges::{gauge, tick};
 use super::{
     Composer, LedgerFeed, Moment, ParameterFeed, RecentMoments, SCENE_EVERY_S, SnapshotRequest, Snapshots,
@@ -397,27 +396,6 @@ fn change_host(
         }
         _ => return None,
     })
-}
-
-/// Puts ball and robots as the case's author drew them, and forces a start; false where that is not possible
-/// now.
-fn situate(game: &mut Game<'_>, library_handle: Option<&LibraryHandle>, name: &str) -> bool {
-    let field = game.config().league.field();
-    let present: Vec<Who> =
-        game.world().robots().iter().filter(|robot| robot.present).map(|robot| robot.who).collect();
-    let keepers = [Colour::Blue, Colour::Yellow].map(|team| game.config().referee.team(team).keeper);
-    let blue_goal = game.host(Colour::Blue).game().own_goal(Colour::Blue);
-    let Some((library_handle, blue_goal)) = library_handle.zip(blue_goal) else { return false };
-    let sides = Sides { field: &field, blue_goal, present: &present, keepers };
-    let Some(situation) = of_case(library_handle, name, &sides) else { return false };
-    if !game.command(RefereeCommand::ForceStart) {
-        return false;
-    }
-    for (who, pose) in situation.robots {
-        game.put_robot(who, pose);
-    }
-    game.move_ball(situation.ball, true);
-    true
 }
 
 impl UserControls {

@@ -100,7 +100,7 @@ pub(super) fn run(
 
     let watch = Watch::new(link.advice());
     let (channels, threads) = Threads::start(config, link, strategy, settings.remote);
-    let own = own_uuid(config);
+    let own = identity::own_uuid(config);
     let mut event_loop = EventLoop {
         host: Host::new(host_settings, protocol::Instant(0)),
         began: Instant::now(),
@@ -137,12 +137,6 @@ pub(super) fn run(
     ));
     event_loop.print();
     event_loop.recording.map_err(RunError::NotWhole)
-}
-
-/// Identifier of our tracker packets.
-fn own_uuid(config: &TeamConfig) -> String {
-    let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    format!("onetwo-{}-{}", config.colour.label(), unix.as_secs())
 }
 
 fn header(settings: &HostSettings, program: Program<'_>) -> RecordingHeader {

@@ -1,4 +1,4 @@
-//! `identity`: the team's key and this start's epoch, for links to robots.
+//! `identity`: the team's key and this start's epoch, for links to robots; our name in tracker packets.
 //!
 //! A link to real robots refuses the key of zeros, which is public, unless `--insecure-zero-key` permits it.
 
@@ -29,6 +29,12 @@ pub struct PublicKey {
     pub link: String,
     /// `--key-file`.
     pub file: Option<PathBuf>,
+}
+
+/// Identifier of our tracker packets.
+pub(super) fn own_uuid(config: &TeamConfig) -> String {
+    let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    format!("onetwo-{}-{}", config.colour.label(), unix.as_secs())
 }
 
 /// The team's key: the file's, or zeros where that is allowed.

@@ -150,11 +150,11 @@ impl<'o, F: Copy> Scene<'o, F> {
     /// Whether no region without a body is first on the straight path among obstacles where they are now;
     /// false where the effort does not suffice to tell.
     pub(super) fn meets_no_region(&self, from: Point<F>, to: Point<F>) -> bool {
-        let region = || {
-            let hit = self.first_hit(from, to - from, 0.0, 0.0).and_then(|number| self.get(number));
-            hit.is_some_and(|(_, obstacle)| !obstacle.is_body)
-        };
-        self.affords_a_piece() && !region()
+        if !self.affords_a_piece() {
+            return false;
+        }
+        let hit = self.first_hit(from, to - from, 0.0, 0.0).and_then(|number| self.get(number));
+        !hit.is_some_and(|(_, obstacle)| !obstacle.is_body)
     }
 
     pub(super) fn is_inside(&self, point: Point<F>) -> bool {

@@ -2,15 +2,38 @@
 //! them, all other robots at free places of a kick-off. m, rad, field frame.
 
 use arena::cases::LibraryHandle;
+use arena::game::Game;
 use casebase::CaseBase;
 use geometry::{Angle, Field, GoalEnd, Point, Pose};
 use protocol::{CaseId, RobotId, Who};
 use rules::restart::kickoff_places;
+use rules::state::RefereeCommand;
 use rules::{Colour, FieldSpec};
 
 /// Least distance to other robots and to the ball at which a robot without a place in the case is put, m: two
 /// robots and as much free space between.
 const CLEARANCE_M: f32 = 0.36;
+
+/// Puts ball and robots as the case's author drew them, and forces a start; false where that is not possible
+/// now.
+pub(super) fn situate(game: &mut Game<'_>, library_handle: Option<&LibraryHandle>, name: &str) -> bool {
+    let field = game.config().league.field();
+    let present: Vec<Who> =
+        game.world().robots().iter().filter(|robot| robot.present).map(|robot| robot.who).collect();
+    let keepers = [Colour::Blue, Colour::Yellow].map(|team| game.config().referee.team(team).keeper);
+    let blue_goal = game.host(Colour::Blue).game().own_goal(Colour::Blue);
+    let Some((library_handle, blue_goal)) = library_handle.zip(blue_goal) else { return false };
+    let sides = Sides { field: &field, blue_goal, present: &present, keepers };
+    let Some(situation) = of_case(library_handle, name, &sides) else { return false };
+    if !game.command(RefereeCommand::ForceStart) {
+        return false;
+    }
+    for (who, pose) in situation.robots {
+        game.put_robot(who, pose);
+    }
+    game.move_ball(situation.ball, true);
+    true
+}
 
 /// Teams and robots of the match.
 pub(super) struct Sides<'a> {

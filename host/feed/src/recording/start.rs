@@ -232,8 +232,8 @@ mod tests {
             game.step(&mut NoWatcher).expect("a tick");
         }
         let ball = Point::new(moment.ball.at[0], moment.ball.at[1]);
-        // The tick after the moment is played: 10 ms at 1 m/s. The tracked ball lies within a robot's outline,
-        // which pushes it out by its radius.
+        // The tick after the moment is played: 10 ms at 1 m/s. The tracked ball lies within a robot's
+        // outline, which pushes it out by its radius.
         assert!(game.world().ball.position.distance(ball) < 0.1);
         for robot in &moment.robots {
             let at = Point::new(robot.at[0], robot.at[1]);
