@@ -154,7 +154,7 @@ impl<'o, F: Copy> Scene<'o, F> {
             return false;
         }
         let hit = self.first_hit(from, to - from, 0.0, 0.0).and_then(|number| self.get(number));
-        !hit.is_some_and(|(_, obstacle)| !obstacle.is_body)
+        hit.is_none_or(|(_, obstacle)| obstacle.is_body)
     }
 
     pub(super) fn is_inside(&self, point: Point<F>) -> bool {
