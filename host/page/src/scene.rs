@@ -42,7 +42,7 @@ pub struct Scene {
     /// Our robots at a glance, an object each (docs/start.md).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub glance: Vec<serde_json::Value>,
-    /// State of our team by the game controller's remote control (docs/case-format.md §5.5).
+    /// State of our team by the game controller's remote control (docs/case-format.md §5.6).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remote: Option<serde_json::Value>,
     /// Number of events up to now.
