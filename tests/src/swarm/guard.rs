@@ -192,9 +192,16 @@ impl Guard {
         if self.stop_since.is_some_and(|since| ms - since > STOP_GRACE) && speed > STOP_SPEED {
             return Err(Danger::Stop(speed));
         }
+        // In our placement the ball is ours alone: one that lies at a wall is kicked off it.
         let allowed = matches!(
             self.phase,
-            Some(Phase::Run | Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::Penalty(_))
+            Some(
+                Phase::Run
+                    | Phase::FreeKick(Side::Ours)
+                    | Phase::Kickoff(Side::Ours)
+                    | Phase::Penalty(_)
+                    | Phase::BallPlacement(Side::Ours)
+            )
         );
         if kick_speed > 0.0 && !allowed {
             return Err(Danger::Kick(self.phase));
