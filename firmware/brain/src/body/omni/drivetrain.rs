@@ -6,7 +6,7 @@
 //! ([`Intent::KeepPath`]). SI, body frame out.
 
 use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
-use motion::avoid::{self, Carried, Course, Restraint, RouteVerdict};
+use motion::avoid::{self, Carried, Course, Detour, Restraint, RouteVerdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::Instant;
 use protocol::robot_io::{OmniKick, WHEELED_STEP};
@@ -45,8 +45,34 @@ pub struct Drivetrain {
 #[derive(Clone, Copy, Debug)]
 struct CurrentPath {
     drive: Drive,
-    /// The goal, or a point past the first corner of the path to it; `None` while the robot brakes.
-    towards: Option<Point<Field>>,
+    kept: Kept,
+}
+
+impl CurrentPath {
+    fn has_way(&self) -> bool {
+        matches!(self.kept, Kept::Way(_))
+    }
+}
+
+/// What a step without time to plan goes on with.
+#[derive(Clone, Copy, Debug)]
+enum Kept {
+    /// The way to the goal, or to a point past the first corner of the path to it, m.
+    Way(Point<Field>),
+    /// The velocity: sideways speed is being lost, or the robot stands.
+    Velocity,
+    /// Braking: the path's motion would have touched something.
+    Braking,
+}
+
+impl Kept {
+    fn of(path: &Detour<Field>) -> Self {
+        match path.restraint {
+            Restraint::None => Self::Way(path.motion.to()),
+            Restraint::Straightened => Self::Velocity,
+            Restraint::Braked | Restraint::Unavoidable => Self::Braking,
+        }
+    }
 }
 
 impl Drivetrain {
@@ -130,14 +156,14 @@ impl Drivetrain {
     fn keep_path(&mut self, belief: &Belief, step: f32, path: CurrentPath) -> Wanted {
         self.under_way = Some(path);
         self.path_age = self.path_age.saturating_add(1);
-        let CurrentPath { drive, towards, .. } = path;
-        let velocity = match towards {
-            Some(to) if self.path_age <= PATH_AGE_MAX => {
+        let CurrentPath { drive, kept } = path;
+        let velocity = match kept {
+            Kept::Way(to) if self.path_age <= PATH_AGE_MAX => {
                 let from = belief.pose.position + self.moves_on;
                 let next = limits(belief, &drive).plan(from, self.velocity, to).at(step).velocity;
                 if belief.is_placing() { next } else { short_of_bodies(belief, next) }
             }
-            None if self.path_age <= COASTS_MAX => short_of_bodies(belief, self.velocity),
+            Kept::Velocity if self.path_age <= COASTS_MAX => short_of_bodies(belief, self.velocity),
             _ => self.braked(step),
         };
         self.wanted(belief, step, velocity, Some(drive.face), &drive)
@@ -155,7 +181,7 @@ impl Drivetrain {
         let rests = self.velocity.norm() < THERE_SPEED;
         if rests && from.distance(drive.to) < AT_PLACE && !is_moved_by_the_rules(belief.game.phase) {
             // No plan is needed.
-            self.under_way = Some(CurrentPath { drive: *drive, towards: None });
+            self.under_way = Some(CurrentPath { drive: *drive, kept: Kept::Velocity });
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
         }
         let field = belief.league().field();
@@ -168,11 +194,11 @@ impl Drivetrain {
         // Too little for all that is around: the path of a few steps before has looked at all of it.
         // In play a robot that this path leaves where it is has nothing to keep.
         let in_play = belief.game.phase == Phase::Run;
-        let towards = under_way.and_then(|path| path.towards);
-        let leads_on = !in_play || towards.is_some_and(|to| to.distance(from) > AT_PLACE);
+        let kept = under_way.map_or(Kept::Velocity, |path| path.kept);
+        let leads_on = !in_play || matches!(kept, Kept::Way(to) if to.distance(from) > AT_PLACE);
         if effort < search_effort(around.obstacles.len()) && path_age < PATH_AGE_MAX && leads_on {
             self.path_age = path_age;
-            return self.keep_path(belief, step, CurrentPath { drive: *drive, towards });
+            return self.keep_path(belief, step, CurrentPath { drive: *drive, kept });
         }
         // Where the effort is too small for all robots the drive only slows down for those far away.
         while effort < search_effort(around.obstacles.len()) && around.leave_out_farthest(from) {}
@@ -193,14 +219,12 @@ impl Drivetrain {
         let path = avoid::plan(&course, &mut self.carried);
         if self.carried.is_searching() && matches!(path.verdict, RouteVerdict::Blocked { .. }) {
             self.path_age = path_age;
-            if let Some(known) = under_way.filter(|known| known.towards.is_some() && path_age < PATH_AGE_MAX)
-            {
+            if let Some(known) = under_way.filter(|known| known.has_way() && path_age < PATH_AGE_MAX) {
                 return self.keep_path(belief, step, CurrentPath { drive: *drive, ..known });
             }
             self.path_age = path_age.saturating_add(1);
         }
-        let is_free = path.restraint == Restraint::None;
-        self.under_way = Some(CurrentPath { drive: *drive, towards: is_free.then(|| path.motion.to()) });
+        self.under_way = Some(CurrentPath { drive: *drive, kept: Kept::of(&path) });
         let there = rests && from.distance(path.goal) < AT_PLACE;
         // While we place the ball the others keep off, and the step has no time for it.
         let velocity = match path.next.velocity {
@@ -311,7 +335,8 @@ const BOTH_BRAKE: f32 = 2.0;
 /// Number of steps for which a path is followed without planning again, as in a flood of packets that take
 /// the whole step: 0.2 s, the age of a command that is too old.
 const PATH_AGE_MAX: u8 = 20;
-/// Number of steps for which a robot without a free path keeps its velocity, where it has no time to plan.
+/// Number of steps for which a robot that loses its sideways speed keeps its velocity, where it has no time
+/// to plan.
 const COASTS_MAX: u8 = 2;
 /// Instructions that a step leaves for inputs, a skill and planning a path: 40,000 (docs/architecture.md §9)
 /// less what every step takes, a message sent, and what estimates err by. By 60 s of six images the worst
@@ -440,6 +465,29 @@ mod tests {
         };
         assert!(turned(false) > 1.0, "{} rad/s", turned(false));
         assert_eq!(turned(true), turned(false));
+    }
+
+    #[test]
+    fn a_robot_too_fast_for_its_area_brakes_in_steps_without_a_plan_too() {
+        // Braking from 3 m/s takes 1.29 m; the defender's place at the area's edge is 1.2 m away.
+        let place = Point::new(-3.57, 0.0);
+        let mut b = belief((-2.37, 0.0, 0.0), (2.0, 0.0));
+        (b.game.phase, b.game.defending) = (Phase::Run, geometry::GoalEnd::Negative);
+        b.velocity = Vector::new(-3.0, 0.0);
+        let mut drivetrain = Drivetrain::default();
+        for tick in 1..=120_u64 {
+            let goes = Drive::avoiding(place, Angle::degrees(0.0)).into();
+            let intent = if tick % 2 == 0 { Intent::KeepPath } else { goes };
+            let wanted = drivetrain.actuate(Instant(tick * 10_000), &b, intent);
+            drivetrain.set_speed_order(&b, wanted.twist);
+            b.velocity = b.pose.vector_to_field(wanted.twist.linear);
+            b.pose.position += b.velocity * 0.01;
+            if b.velocity.x() >= 0.0 {
+                break;
+            }
+        }
+        let beyond = place.x() - b.pose.position.x();
+        assert!(beyond < 0.12, "{beyond} m beyond its place");
     }
 
     /// The speed towards an opponent `apart` m ahead that comes with `theirs` m/s, of a robot that wants 3.
