@@ -61,16 +61,17 @@ enum Kept {
     Way(Point<Field>),
     /// The velocity: sideways speed is being lost, or the robot stands.
     Velocity,
-    /// Braking: the path's motion would have touched something.
-    Braking,
+    /// Braking at this deceleration, m/s²: the path's motion would have touched something.
+    Braking(f32),
 }
 
 impl Kept {
-    fn of(path: &Detour<Field>) -> Self {
+    fn of(path: &Detour<Field>, drive: &Drive) -> Self {
         match path.restraint {
             Restraint::None => Self::Way(path.motion.to()),
             Restraint::Straightened => Self::Velocity,
-            Restraint::Braked | Restraint::Unavoidable => Self::Braking,
+            Restraint::Braked => Self::Braking(LIMITS.braking),
+            Restraint::Unavoidable => Self::Braking(drive.hardest_braking()),
         }
     }
 }
@@ -141,12 +142,12 @@ impl Drivetrain {
     }
 
     fn stand(&mut self, belief: &Belief, step: f32, face: Option<Angle>) -> Wanted {
-        self.wanted(belief, step, self.braked(step), face, &held_or_free(belief))
+        self.wanted(belief, step, self.braked(step, LIMITS.braking), face, &held_or_free(belief))
     }
 
-    /// The velocity after a step of braking.
-    fn braked(&self, step: f32) -> Vector<Field> {
-        self.velocity.clamped((self.velocity.norm() - LIMITS.braking * step).max(0.0))
+    /// The velocity after a step of braking at that deceleration, m/s².
+    fn braked(&self, step: f32, deceleration: f32) -> Vector<Field> {
+        self.velocity.clamped((self.velocity.norm() - deceleration * step).max(0.0))
     }
 
     /// Follows the same path, and turns to the same heading, without planning; brakes on a path that is too
@@ -164,7 +165,8 @@ impl Drivetrain {
                 if belief.is_placing() { next } else { short_of_bodies(belief, next) }
             }
             Kept::Velocity if self.path_age <= COASTS_MAX => short_of_bodies(belief, self.velocity),
-            _ => self.braked(step),
+            Kept::Braking(deceleration) => self.braked(step, deceleration),
+            Kept::Way(_) | Kept::Velocity => self.braked(step, LIMITS.braking),
         };
         self.wanted(belief, step, velocity, Some(drive.face), &drive)
     }
@@ -224,12 +226,13 @@ impl Drivetrain {
             }
             self.path_age = path_age.saturating_add(1);
         }
-        self.under_way = Some(CurrentPath { drive: *drive, kept: Kept::of(&path) });
+        self.under_way = Some(CurrentPath { drive: *drive, kept: Kept::of(&path, drive) });
         let there = rests && from.distance(path.goal) < AT_PLACE;
         // While we place the ball the others keep off, and the step has no time for it.
         let velocity = match path.next.velocity {
             _ if there => Vector::default(),
             next if belief.is_placing() => next,
+            _ if path.restraint == Restraint::Unavoidable => self.braked(step, drive.hardest_braking()),
             next => short_of_bodies(belief, next),
         };
         self.wanted(belief, step, velocity, Some(drive.face), drive)

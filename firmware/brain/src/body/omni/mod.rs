@@ -86,6 +86,14 @@ impl Drive {
     pub fn holding(to: Point<Field>, face: Angle) -> Self {
         Self { mode: DriveMode::Holding, dribbler: 1.0, ..Self::avoiding(to, face) }
     }
+
+    /// Deceleration of a robot that touches something otherwise, m/s²: all that wheels hold, without the ball.
+    fn hardest_braking(&self) -> f32 {
+        match self.mode {
+            DriveMode::Holding => RobotSpec::OURS.plan_holding.braking,
+            DriveMode::Avoiding | DriveMode::Bold => RobotSpec::OURS.governor.brake,
+        }
+    }
 }
 
 impl From<Drive> for Intent {
