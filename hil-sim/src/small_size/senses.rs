@@ -34,11 +34,7 @@ impl Senses {
         let scale = self.deviation(self.noise.odometry);
         let drift = self.deviation(self.noise.gyro);
         SensorFrame {
-            pose: None,
-            ball: None,
-            opponents: heapless::Vec::new(),
             ball_contact: robot.ball_contact,
-            busy: false,
             odometry: Twist {
                 linear: Vector::new(x, y) * (1.0 + scale),
                 angular: odometer.turned * mean + drift,
@@ -49,7 +45,7 @@ impl Senses {
                 tipped: robot.tipped,
                 kicker_ready: robot.charged(now),
             },
-            camera: None,
+            ..SensorFrame::default()
         }
     }
 
