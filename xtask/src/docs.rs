@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::context::{Context, Failure, line_of, run};
+use crate::context::{Context, Failure, output_of, run};
 use crate::{bench, budgets, evaluation, example_cost, page, pictures};
 
 /// Figures that one program makes, and the pages that show them.
@@ -74,15 +74,8 @@ fn commit(context: &Context) -> Result<String, Failure> {
 
 fn git(context: &Context, arguments: &str) -> Result<String, Failure> {
     let mut command = Command::new("git");
-    command.current_dir(context.root()).args(arguments.split(' '));
-    let line = line_of(&command);
-    match command.output() {
-        Ok(output) if output.status.success() => {
-            Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
-        }
-        Ok(output) => Err(Failure::Command { line, status: output.status }),
-        Err(error) => Err(Failure::Start { line, error }),
-    }
+    let printed = output_of(command.current_dir(context.root()).args(arguments.split(' ')))?;
+    Ok(printed.trim().to_owned())
 }
 
 /// Notes the commit in a page: in place of an earlier one, or at the end.
