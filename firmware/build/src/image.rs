@@ -173,7 +173,6 @@ impl Program {
         firmware.map_or(Budget::IMAGE, |firmware| Budget { flash: firmware.flash, ram: firmware.ram })
     }
 
-    /// The board it is for.
     fn package(self) -> &'static str {
         match self {
             Self::Board(board) | Self::More(board, _) => &board.package,
@@ -181,7 +180,6 @@ impl Program {
         }
     }
 
-    /// The target it is built for.
     fn target(self) -> &'static str {
         match self {
             Self::Board(board) | Self::More(board, _) => &board.target,

@@ -247,7 +247,6 @@ impl<'a> Simulation<'a> {
         self.opponents.iter().map(|opponent| opponent.role)
     }
 
-    /// Applies the faults scheduled for this tick.
     fn apply_faults(&mut self, number: u32) -> Result<(), SimulationError> {
         let due = self.faults.partition_point(|fault| fault.tick <= number);
         for ScheduledFault { fault, .. } in self.faults.drain(..due).collect::<Vec<_>>() {

@@ -234,7 +234,6 @@ impl World {
         }
     }
 
-    /// A ball that lands on a robot hops off it.
     fn land_on_robots(&mut self, before: &Ball, near: &[usize]) {
         for &i in near {
             let top = self.robots[i].body.height;

@@ -13,7 +13,6 @@ use super::robot::{Odometer, Robot};
 use crate::rng::Stream;
 use protocol::Who;
 
-/// The sensors of one robot.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Senses {
     noise: NoiseParameters,

@@ -217,7 +217,6 @@ fn errors(findings: &[Finding]) -> String {
     errors.fold(String::new(), |text, finding| text + "  " + &finding.to_string() + "\n")
 }
 
-/// Names of the built-in leagues.
 fn leagues() -> String {
     LEAGUES.iter().map(|league| league.name).collect::<Vec<_>>().join(", ")
 }

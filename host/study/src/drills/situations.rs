@@ -73,7 +73,6 @@ struct IndexRow {
     note: String,
 }
 
-/// A row of the positions.
 #[derive(Deserialize)]
 struct PositionRow {
     situation: String,
@@ -177,7 +176,6 @@ fn for_rows<R: for<'d> Deserialize<'d>>(
 /// A frame whose rows are being read.
 #[derive(Default)]
 struct OpenFrame {
-    /// Place of its situation.
     place: Option<usize>,
     time_s: f32,
     ball: Option<Point<Field>>,

@@ -209,7 +209,6 @@ impl<U: Playable> Player<U> for JournalPlayer<'_, U::Played> {
     }
 }
 
-/// The number by which a unit belongs to a shard.
 fn unit_number(key: u64) -> usize {
     (key >> 1) as usize
 }

@@ -249,7 +249,6 @@ fn robots(point: &CurvePoint) -> String {
     point.to_goal_robots.map_or_else(String::new, |robots| format!("{robots:.2}"))
 }
 
-/// Unit of a gain.
 fn gained(learned: &Learned) -> &'static str {
     if learned.opponents.is_empty() { "points" } else { "goals in 100 scenes" }
 }

@@ -33,7 +33,6 @@ impl RadioReceiver for UdpReceiver {
     }
 }
 
-/// Sender of frames as UDP datagrams.
 pub(crate) struct UdpSender {
     pub(crate) socket: &'static UdpSocket<'static>,
     pub(crate) to: SocketAddrV4,
