@@ -126,7 +126,8 @@ pub enum KickAim {
 }
 
 geometry::labels! {
-    /// The body's kick primitive, labelled by its key in the league's file; its place is its code in the table.
+    /// The body's kick primitive, labelled by its key in the league's file; its place is its code in the
+    /// table.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
     pub enum Primitive {
         /// The file names none: the body chooses by the kick's aim.

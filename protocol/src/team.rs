@@ -197,7 +197,8 @@ impl Status {
 const SHOT_SHIFT: u8 = 3;
 
 geometry::labels! {
-    /// Rule by which the holder of a case's ball shoots at goal or does not; its place is the number on the air.
+    /// Rule by which the holder of a case's ball shoots at goal or does not; its place is the number on the
+    /// air.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub enum ShotRule {
         /// No shot was due yet.

@@ -1,5 +1,5 @@
-//! `findings`: tests: faults of a library are reported with code and line (docs/case-format.md §1.2), those that
-//! `mistakes.rs` does not make.
+//! `findings`: tests: faults of a library are reported with code and line (docs/case-format.md §1.2), those
+//! that `mistakes.rs` does not make.
 
 mod common;
 

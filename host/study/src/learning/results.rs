@@ -34,8 +34,8 @@ geometry::labels! {
         Warned = "warned",
         /// The result is lower in a kind of validation starts, or in all of a world together.
         Lowers = "lowers",
-        /// On validation starts of a world the opponents touch the ball more often with it, and its gain there
-        /// may be chance.
+        /// On validation starts of a world the opponents touch the ball more often with it, and its gain
+        /// there may be chance.
         Touches = "more touches",
         /// Taken over into the learned library.
         Accepted = "accepted",
