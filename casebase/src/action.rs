@@ -125,44 +125,24 @@ pub enum KickAim {
     },
 }
 
-/// The body's kick primitive; the league's file names it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Primitive {
-    /// The file names none: the body chooses by the kick's aim.
-    #[default]
-    Unspecified,
-    /// Forward, over a short distance.
-    ForwardSoft,
-    /// Forward, over a long distance.
-    ForwardHard,
-    /// Kick to the robot's left side.
-    Left,
-    /// Kick to the robot's right side.
-    Right,
-    /// Kick with the strength of a pass.
-    Pass,
-}
-
-impl Primitive {
-    /// All of them, in the order of their codes in the table.
-    pub const ALL: [Self; 6] =
-        [Self::Unspecified, Self::ForwardSoft, Self::ForwardHard, Self::Left, Self::Right, Self::Pass];
-
-    /// Key in the league's file; empty for [`Primitive::Unspecified`].
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Unspecified => "",
-            Self::ForwardSoft => "forward_soft",
-            Self::ForwardHard => "forward_hard",
-            Self::Left => "left",
-            Self::Right => "right",
-            Self::Pass => "pass",
-        }
-    }
-
-    /// The primitive of that key in the league's file.
-    pub fn from_label(label: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|primitive| *primitive != Self::Unspecified && primitive.label() == label)
+geometry::labels! {
+    /// The body's kick primitive, labelled by its key in the league's file; its place is its code in the
+    /// table.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+    pub enum Primitive {
+        /// The file names none: the body chooses by the kick's aim.
+        #[default]
+        Unspecified = "",
+        /// Forward, over a short distance.
+        ForwardSoft = "forward_soft",
+        /// Forward, over a long distance.
+        ForwardHard = "forward_hard",
+        /// Kick to the robot's left side.
+        Left = "left",
+        /// Kick to the robot's right side.
+        Right = "right",
+        /// Kick with the strength of a pass.
+        Pass = "pass",
     }
 }
 
@@ -228,13 +208,5 @@ mod tests {
         assert!(field.contains(PointMm::new(-2700, 1800)));
         assert!(!field.contains(PointMm::new(-2701, 0)) && !field.contains(PointMm::new(i32::MIN, 0)));
         assert_eq!(field.clamp(PointMm::new(9999, -1801)), PointMm::new(2700, -1800));
-    }
-
-    #[test]
-    fn labels_of_primitives_lead_back() {
-        for primitive in Primitive::ALL.into_iter().skip(1) {
-            assert_eq!(Primitive::from_label(primitive.label()), Some(primitive));
-        }
-        assert_eq!(Primitive::from_label(""), None);
     }
 }

@@ -84,7 +84,6 @@ pub(crate) struct Corridor {
     r_max: f32,
     /// From `from` to `to`.
     axis: [f32; 2],
-    /// The axis' length, squared.
     squared: f32,
 }
 
@@ -102,7 +101,6 @@ impl Corridor {
         self.to
     }
 
-    /// The leg of this corridor.
     pub(crate) fn into_leg(self, robot: CaseRobot, action: usize, kind: LegKind) -> Leg {
         let Self { from, to, r_min, r_max, .. } = self;
         Leg { from, to, r_min, r_max, robot, action, kind }

@@ -39,7 +39,6 @@ pub(crate) struct QueryKey {
     pub(crate) ball: [f32; 2],
     /// The exponent at the end of scopes.
     pub(crate) limit: f32,
-    /// Number of robots present.
     robots: usize,
 }
 

@@ -37,7 +37,6 @@ fn main() {
     }
 }
 
-/// Errors of all steps.
 #[derive(Default)]
 struct Errors {
     pose: Mean,

@@ -20,8 +20,8 @@ pub const OPPONENTS_SEEN_MAX: usize = 4;
 /// Landmarks in one camera frame.
 pub const LANDMARKS_SEEN_MAX: usize = 4;
 
-/// Measurements of a robot at one moment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// Measurements of a robot at one moment; by default of one that stands, sees nothing and holds no ball.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SensorFrame {
     /// Own pose, where something measures it as a whole: a simulator without noise, or the placing by hand at
     /// kick-off. A robot on wheels has no camera and knows its pose from its host alone.

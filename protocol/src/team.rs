@@ -188,42 +188,35 @@ impl Status {
     }
 
     /// The rule that chose the last shot of the sender's case; `None` of a number without a meaning.
-    pub const fn shot(self) -> Option<ShotRule> {
-        Some(match self.0 >> SHOT_SHIFT & 7 {
-            0 => ShotRule::NoShot,
-            1 => ShotRule::Leg,
-            2 => ShotRule::Likelier,
-            3 => ShotRule::Gap,
-            4 => ShotRule::PushOn,
-            5 => ShotRule::OutOfTime,
-            6 => ShotRule::Pressed,
-            _ => return None,
-        })
+    pub fn shot(self) -> Option<ShotRule> {
+        ShotRule::ALL.get(usize::from(self.0 >> SHOT_SHIFT & 7)).copied()
     }
 }
 
 /// First bit of the rule of a shot in a [`Status`].
 const SHOT_SHIFT: u8 = 3;
 
-/// Rule by which the holder of a case's ball shoots at goal or does not, by the number on the air.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u8)]
-pub enum ShotRule {
-    /// No shot was due yet.
-    #[default]
-    NoShot = 0,
-    /// The leg that retrieval checked is kicked.
-    Leg = 1,
-    /// Another shot is likelier a goal than the leg.
-    Likelier = 2,
-    /// The ball is carried to, or kept at, where a gap will open: worth more than a shot now.
-    Gap = 3,
-    /// The ball is pushed on towards the goal: worth more than a shot from afar.
-    PushOn = 4,
-    /// The time for the shot was up.
-    OutOfTime = 5,
-    /// An opponent comes for the ball before the case's action is done: shot instead of it.
-    Pressed = 6,
+geometry::labels! {
+    /// Rule by which the holder of a case's ball shoots at goal or does not; its place is the number on the
+    /// air.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub enum ShotRule {
+        /// No shot was due yet.
+        #[default]
+        NoShot = "no-shot",
+        /// The leg that retrieval checked is kicked.
+        Leg = "leg",
+        /// Another shot is likelier a goal than the leg.
+        Likelier = "likelier-shot",
+        /// The ball is carried to, or kept at, where a gap will open: worth more than a shot now.
+        Gap = "waited-for-gap",
+        /// The ball is pushed on towards the goal: worth more than a shot from afar.
+        PushOn = "pushed-on",
+        /// The time for the shot was up.
+        OutOfTime = "out-of-time",
+        /// An opponent comes for the ball before the case's action is done: shot instead of it.
+        Pressed = "pressed",
+    }
 }
 
 /// A retrieve–reuse cycle as one robot knows it.
@@ -301,31 +294,33 @@ pub enum Closure {
     },
 }
 
-/// Reason why a cycle was stopped (paper §4.2; docs/architecture.md §5.3).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum AbortReason {
-    /// Before the first touch: the ball left the case's scope.
-    BallOutOfScope,
-    /// Before the first touch: an opponent stands in the ball's path.
-    PathBlocked,
-    /// A robot involved, or the coordinator, is gone, has restarted, or has lost its host.
-    RobotLost,
-    /// The holder lost the ball, or an action failed.
-    ActionFailed,
-    /// After the first touch: an opponent is on the ball.
-    OpponentOnBall,
-    /// After the first touch: the ball stopped where no robot of the case expects it.
-    BallAtRest,
-    /// The cycle took longer than 1.5 × the expected duration + 2 s.
-    Timeout,
-    /// The coordinator stayed silent about its decision.
-    NoDecision,
-    /// A robot carries another case base and cannot verify the case.
-    UnknownCase,
-    /// The host gave the robot that stopped it another order.
-    Reassigned,
-    /// The referee stopped the game.
-    GameStopped,
+geometry::labels! {
+    /// Reason why a cycle was stopped (paper §4.2; docs/architecture.md §5.3).
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+    pub enum AbortReason {
+        /// Before the first touch: the ball left the case's scope.
+        BallOutOfScope = "ball-out-of-scope",
+        /// Before the first touch: an opponent stands in the ball's path.
+        PathBlocked = "path-blocked",
+        /// A robot involved, or the coordinator, is gone, has restarted, or has lost its host.
+        RobotLost = "robot-lost",
+        /// The holder lost the ball, or an action failed.
+        ActionFailed = "action-failed",
+        /// After the first touch: an opponent is on the ball.
+        OpponentOnBall = "opponent-on-ball",
+        /// After the first touch: the ball stopped where no robot of the case expects it.
+        BallAtRest = "ball-at-rest",
+        /// The cycle took longer than 1.5 × the expected duration + 2 s.
+        Timeout = "timeout",
+        /// The coordinator stayed silent about its decision.
+        NoDecision = "no-decision",
+        /// A robot carries another case base and cannot verify the case.
+        UnknownCase = "unknown-case",
+        /// The host gave the robot that stopped it another order.
+        Reassigned = "reassigned",
+        /// The referee stopped the game.
+        GameStopped = "game-stopped",
+    }
 }
 
 /// Progress of a robot in its cycle (paper §4.2, Fig. 10).

@@ -41,7 +41,6 @@ struct Arguments {
     record: Option<PathBuf>,
 }
 
-/// The match of one seed, recorded.
 fn recorded(seed: u64, stem: &Path) -> ExitCode {
     let plan = Plan::drawn(seed, matches::LENGTH);
     let header = header(env!("CARGO_PKG_VERSION"), "", &matches::config(&plan));
@@ -107,7 +106,6 @@ fn referee(runs: Runs) -> ExitCode {
     if broken == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Runs of a team under faults.
 fn faults(runs: Runs) -> ExitCode {
     let (begin, visible) = (Instant::now(), std::io::stderr().is_terminal());
     let (counters, broken) = watch(runs, |done| {

@@ -9,7 +9,6 @@ use std::path::Path;
 use std::{fs, io};
 
 use brain::{Brain, BrainConfig};
-use geometry::Twist;
 use hil_sim::Stream;
 use protocol::host::HostMessage;
 use protocol::robot_io::{ActuatorFrame, Health, SensorFrame};
@@ -121,14 +120,9 @@ impl Minds {
         }
         (self.now, self.reported) = (Instant(now.0 + 10_000), 0);
         let sensors = SensorFrame {
-            pose: None,
-            ball: None,
-            opponents: heapless::Vec::new(),
             ball_contact: now.0 % 70_000 == 0,
-            busy: false,
-            odometry: Twist::default(),
             health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
-            camera: None,
+            ..SensorFrame::default()
         };
         while let Some(due) = brain.poll_timeout().filter(|due| *due <= self.now) {
             brain.handle_timeout(due);

@@ -1,7 +1,7 @@
 //! `led_robot`: common parts of tests with robots on wheels under a host: a frame of sensors that see
 //! nothing, a command to drive on, and a world in which blue's robots stand. m, rad, field frame.
 
-use geometry::{Field, GoalEnd, Pose, Twist, Vector};
+use geometry::{Field, GoalEnd, Pose, Vector};
 use host::radio::RadioSituation;
 use host::world::{BallModels, Robot, World};
 use protocol::host::{Directive, HostCommand, RuleRole};
@@ -15,16 +15,8 @@ pub const RUNNING: RadioSituation = RadioSituation { us: Colour::Blue, phase: Ph
 
 /// Sensor frame of a robot that sees nothing, does not move, and whose hardware is in order.
 pub fn blind_sensors() -> SensorFrame {
-    SensorFrame {
-        pose: None,
-        ball: None,
-        opponents: heapless::Vec::new(),
-        ball_contact: false,
-        busy: false,
-        odometry: Twist::default(),
-        health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
-        camera: None,
-    }
+    let health = Health { battery: Some(16.0), tipped: false, kicker_ready: true };
+    SensorFrame { health, ..SensorFrame::default() }
 }
 
 /// Command to drive to (3, 0), which no robot of these tests reaches.

@@ -7,7 +7,7 @@
 use brain::{Brain, BrainConfig};
 use casebase::CaseBase;
 use geometry::{Field, Point, Pose, Twist, Vector};
-use protocol::robot_io::{ActuatorFrame, BallSight, Health, LeggedKick, LeggedPrimitive, SensorFrame};
+use protocol::robot_io::{ActuatorFrame, BallSight, LeggedKick, LeggedPrimitive, SensorFrame};
 use protocol::team::{Beacon, Closure, CycleState, Decision, TeamMessage};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
@@ -98,10 +98,7 @@ impl<'a> Tabletop<'a> {
                 ball: Some(BallSight { position: ball, sigma: 0.0, age: Duration(0) }),
                 opponents: opponents.iter().copied().collect(),
                 ball_contact: robot.holds,
-                busy: false,
-                odometry: Twist::default(),
-                health: Health::default(),
-                camera: None,
+                ..SensorFrame::default()
             };
             robot.brain.handle_sensors(now, &sensors);
             while let Some(message) = robot.brain.poll_message(now) {

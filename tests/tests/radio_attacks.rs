@@ -89,7 +89,6 @@ impl Body {
         Instant((own * (1.0 + self.drift_ppm * 1e-6)) as u64)
     }
 
-    /// A step: packets in, packets out.
     fn step(&mut self, now: u64, received: &[Packet]) -> Vec<Packet> {
         let clock = self.clock(now);
         for packet in received {
@@ -403,7 +402,6 @@ fn commands(now: u64, to: RobotId, keys: &RobotKeys) -> Vec<Packet> {
     (0..FULL_RATE as u32).map(frame).collect()
 }
 
-/// Handshakes of teammates, each with a genuine tag.
 fn teammates_handshakes(now: u64) -> Vec<Packet> {
     let others = RobotId::all().filter(|other| *other != id()).take(FULL_RATE);
     let handshake = TeamMessage::Handshake(Handshake { teammates: heapless::Vec::new() });

@@ -19,7 +19,6 @@ fn simulated() -> impl Iterator<Item = (League, &'static Parameters)> {
     leagues().map(|league| (league, Parameters::of(league).expect("a league on wheels")))
 }
 
-/// The reference robot's description and its numbers.
 fn reference() -> (Description, RobotSpec) {
     let (name, text) = BUILT_IN[0];
     (Description::read(name, text).expect("a built-in description"), RobotSpec::REFERENCE)

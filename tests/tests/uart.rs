@@ -52,7 +52,6 @@ impl Uart {
     }
 }
 
-/// Results of a run.
 #[derive(Debug, Default)]
 struct Counts {
     frames: u32,

@@ -8,11 +8,9 @@ use std::process::{Command, Stdio};
 
 use crate::context::{Context, Failure, line_of, run};
 
-/// A figure and its budget.
 pub(crate) struct Row {
     /// Description of the counted operation.
     pub(crate) what: String,
-    /// Millions of instructions.
     pub(crate) millions: f64,
     /// Budget in millions, where docs/architecture.md §9 contains one.
     pub(crate) most: Option<f64>,
@@ -28,7 +26,6 @@ impl Row {
     }
 }
 
-/// The rows as Markdown.
 pub(crate) fn table(rows: &[Row]) -> String {
     let mut text = String::from("| what | million instructions | at most |\n|---|---|---|\n");
     for row in rows {

@@ -18,7 +18,6 @@ pub(crate) const WHAT: &str =
 /// The version that `deny.toml` is written for.
 const VERSION: &str = "0.20.2";
 
-/// Runs it.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     let tool = ensure(context)?;
     deny(context, &tool, "check licenses bans sources")?;

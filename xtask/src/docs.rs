@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::context::{Context, Failure, line_of, run};
+use crate::context::{Context, Failure, output_of, run};
 use crate::{bench, budgets, evaluation, example_cost, page, pictures};
 
 /// Figures that one program makes, and the pages that show them.
@@ -74,15 +74,8 @@ fn commit(context: &Context) -> Result<String, Failure> {
 
 fn git(context: &Context, arguments: &str) -> Result<String, Failure> {
     let mut command = Command::new("git");
-    command.current_dir(context.root()).args(arguments.split(' '));
-    let line = line_of(&command);
-    match command.output() {
-        Ok(output) if output.status.success() => {
-            Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
-        }
-        Ok(output) => Err(Failure::Command { line, status: output.status }),
-        Err(error) => Err(Failure::Start { line, error }),
-    }
+    let printed = output_of(command.current_dir(context.root()).args(arguments.split(' ')))?;
+    Ok(printed.trim().to_owned())
 }
 
 /// Notes the commit in a page: in place of an earlier one, or at the end.
@@ -108,85 +101,53 @@ fn onetwo(context: &Context, arguments: &str) -> Result<(), Failure> {
     run(&mut context.cargo(&format!("run --release -- {arguments}")))
 }
 
+const fn figures(
+    name: &'static str,
+    what: &'static str,
+    pages: &'static [&'static str],
+    make: fn(&Context) -> Result<(), Failure>,
+) -> Figures {
+    Figures { name, what, pages, make }
+}
+
 const ALL: [Figures; 13] = [
-    Figures {
-        name: "budgets",
-        what: "cost of simulator, trials, strategy and host",
-        pages: &["docs/budgets.md"],
-        make: budgets::write,
-    },
-    Figures {
-        name: "firmware",
-        what: "size, stack and steps of the images",
-        pages: &["docs/firmware.md"],
-        make: |context| onetwo(context, "firmware report --write"),
-    },
-    Figures {
-        name: "retrieval",
-        what: "cost of a retrieval",
-        pages: &["casebase/README.md"],
-        make: |context| bench::start(context, "retrieval", &[WRITE.into()]),
-    },
-    Figures {
-        name: "motion",
-        what: "cost of planned motion",
-        pages: &["firmware/motion/README.md"],
-        make: |context| bench::start(context, "motion", &[WRITE.into()]),
-    },
-    Figures {
-        name: "radio",
-        what: "cost of radio frames",
-        pages: &["protocol/README.md"],
-        make: |context| bench::start(context, "radio", &[WRITE.into()]),
-    },
-    Figures {
-        name: "simulator",
-        what: "cost of the simulator's parts",
-        pages: &["hil-sim/README.md"],
-        make: example_cost::write_simulator,
-    },
-    Figures {
-        name: "page",
-        what: "cost of a frame and of viewers",
-        pages: &["host/page/README.md"],
-        make: |context| page::bench(context, true),
-    },
-    Figures {
-        name: "pictures",
-        what: "cases, trials and strategy",
-        pages: &["casebase/README.md", "docs/strategy.md"],
-        make: pictures::draw,
-    },
-    Figures {
-        name: "screenshots",
-        what: "the page in a browser",
-        pages: &["docs/commands.md"],
-        make: page::pictures,
-    },
-    Figures {
-        name: "faults",
-        what: "play under loss",
-        pages: &["docs/faults.md"],
-        make: |context| bench::start_example(context, "faults", &[WRITE.into()]),
-    },
-    Figures {
-        name: "skills",
-        what: "single skills",
-        pages: &["docs/skills.md"],
-        make: evaluation::write_skills,
-    },
-    Figures {
-        name: "evaluation",
-        what: "the paper's trials",
-        pages: &["docs/results/evaluation.md"],
-        make: evaluation::write,
-    },
-    Figures {
-        name: "matches",
-        what: "whole matches, 45 minutes of one core",
-        pages: &["docs/results/matches.md"],
-        make: |context| evaluation::write_matches(context, false),
-    },
+    figures("budgets", "cost of simulator, trials, strategy and host", &["docs/budgets.md"], budgets::write),
+    figures("firmware", "size, stack and steps of the images", &["docs/firmware.md"], |context| {
+        onetwo(context, "firmware report --write")
+    }),
+    figures("retrieval", "cost of a retrieval", &["casebase/README.md"], |context| {
+        bench::start(context, "retrieval", &[WRITE.into()])
+    }),
+    figures("motion", "cost of planned motion", &["firmware/motion/README.md"], |context| {
+        bench::start(context, "motion", &[WRITE.into()])
+    }),
+    figures("radio", "cost of radio frames", &["protocol/README.md"], |context| {
+        bench::start(context, "radio", &[WRITE.into()])
+    }),
+    figures(
+        "simulator",
+        "cost of the simulator's parts",
+        &["hil-sim/README.md"],
+        example_cost::write_simulator,
+    ),
+    figures("page", "cost of a frame and of viewers", &["host/page/README.md"], |context| {
+        page::bench(context, true)
+    }),
+    figures(
+        "pictures",
+        "cases, trials and strategy",
+        &["casebase/README.md", "docs/strategy.md"],
+        pictures::draw,
+    ),
+    figures("screenshots", "the page in a browser", &["docs/commands.md"], page::pictures),
+    figures("faults", "play under loss", &["docs/faults.md"], |context| {
+        bench::start_example(context, "faults", &[WRITE.into()])
+    }),
+    figures("skills", "single skills", &["docs/skills.md"], evaluation::write_skills),
+    figures("evaluation", "the paper's trials", &["docs/results/evaluation.md"], evaluation::write),
+    figures("matches", "whole matches, 45 minutes of one core", &["docs/results/matches.md"], |context| {
+        evaluation::write_matches(context, false)
+    }),
 ];
 
 /// Argument of programs that write their table into a page.

@@ -16,7 +16,6 @@ pub(crate) struct Example {
 }
 
 impl Example {
-    /// Instructions of one of each part.
     pub(crate) fn rows(&self, context: &Context) -> Result<Vec<Row>, Failure> {
         let Self { package, name, parts } = self;
         let build = format!("-p {package} --example {name}");

@@ -19,7 +19,6 @@ const CRATES_MAX: usize = 116;
 /// Bytes of the program without symbols.
 const PROGRAM_MAX: u64 = 20_000_000;
 
-/// Counts and weighs.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     let mut tree = context.cargo("tree --locked -e normal,build --prefix none --no-dedupe");
     let crates = crates(&output_of(&mut tree)?);

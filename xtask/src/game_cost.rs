@@ -12,7 +12,6 @@ use std::{fs, io};
 use crate::context::{Context, Failure, line_of, run};
 use crate::cost::{Row, counted, release};
 
-/// The figures.
 pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     let onetwo = release(context, "--bin onetwo", "onetwo")?;
     let feeder = release(context, "-p onetwo-host --example host_cost", "examples/host_cost")?;

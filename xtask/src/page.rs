@@ -58,7 +58,6 @@ fn frames(context: &Context, program: &Path) -> Result<String, Failure> {
     }
 }
 
-/// The path of the built program.
 fn built(context: &Context) -> Result<PathBuf, Failure> {
     run(&mut context.cargo("build --release --package onetwo"))?;
     let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| context.root().join("target"), PathBuf::from);
@@ -116,7 +115,6 @@ const COUNT_DIFFERENCE_MAX: f64 = 0.005;
 const READING_VIEWERS: &str = "rrrrr";
 const SLOW_VIEWERS: &str = "sdsdv";
 
-/// Counts of a match with viewers.
 struct Counted {
     /// Instructions of the match's own thread.
     instructions: u64,

@@ -2,7 +2,6 @@
 
 use crate::context::{Context, Failure, run};
 
-/// Draws every figure.
 pub(crate) fn draw(context: &Context) -> Result<(), Failure> {
     PICTURES
         .iter()

@@ -14,7 +14,6 @@ use crate::context::{Context, Failure, output_of, run};
 /// The property checked by the step.
 pub(crate) const WHAT: &str = "the Python package installs, answers as the program does and passes Gymnasium's and PettingZoo's checkers";
 
-/// Runs it.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     context.ensure_component("fmt", "rustfmt")?;
     run(&mut context.cargo(&format!("fmt --check {MANIFEST}")))?;

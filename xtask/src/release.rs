@@ -37,7 +37,6 @@ fn manuals(context: &Context, out: &Path) -> Result<PathBuf, Failure> {
     Ok(pages)
 }
 
-/// One archive, and its checksum beside it.
 fn archive(
     context: &Context,
     target: &str,
@@ -98,7 +97,6 @@ fn context_files(root: &Path) -> [PathBuf; 4] {
     ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"].map(|name| root.join(name))
 }
 
-/// An empty directory.
 fn fresh(directory: &Path) -> Result<(), Failure> {
     let emptied = match fs::remove_dir_all(directory) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
@@ -107,7 +105,6 @@ fn fresh(directory: &Path) -> Result<(), Failure> {
     emptied.map_err(|error| Failure::at(directory, error))
 }
 
-/// Copies a file into a directory.
 fn put(file: &Path, directory: &Path) -> Result<(), Failure> {
     let name = file.file_name().unwrap_or_default();
     fs::create_dir_all(directory)

@@ -21,7 +21,6 @@ impl Outcome {
     }
 }
 
-/// Time of a step.
 #[derive(Clone, Copy)]
 struct Took {
     wall: Duration,

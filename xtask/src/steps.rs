@@ -9,7 +9,6 @@ use firmware_build::{Board, Install, boards};
 use crate::context::{Context, Failure, run};
 use crate::{deny, determinism, emulate, first_build, images, page, python, readme, robots};
 
-/// One checked property.
 #[derive(Debug)]
 pub(crate) struct Step {
     /// Its name for `--only`.

@@ -12,11 +12,9 @@ use crate::{
 /// An xtask command other than `test`.
 #[derive(Debug)]
 pub(crate) struct Task {
-    /// Its name on the command line.
     pub(crate) name: &'static str,
     /// The arguments after the name, as the usage prints them; empty where it takes none.
     pub(crate) takes: &'static str,
-    /// Its effect, for the usage.
     pub(crate) what: &'static str,
     /// Runs it; the arguments are those after its name.
     pub(crate) run: fn(&Context, &[String]) -> Result<(), Failure>,
@@ -54,7 +52,6 @@ impl Task {
     }
 }
 
-/// The usage of all commands.
 pub(crate) fn usage() -> String {
     let mut text = String::new();
     for task in &TASKS {

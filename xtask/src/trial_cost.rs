@@ -26,7 +26,6 @@ pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     Ok(rows)
 }
 
-/// Results of trials.
 struct Played {
     instructions: f64,
     seconds: f64,

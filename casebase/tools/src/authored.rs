@@ -27,7 +27,6 @@ pub(crate) struct Authored {
     pub(crate) opponents: Vec<Opponent>,
 }
 
-/// A robot of a case.
 #[derive(Clone, Debug)]
 pub(crate) struct Teammate {
     pub(crate) at: PointMm,
@@ -44,13 +43,11 @@ impl Teammate {
     }
 }
 
-/// An opponent and its scope.
 #[derive(Clone, Debug)]
 pub(crate) struct Opponent {
     pub(crate) at: PointMm,
     pub(crate) span: Range<usize>,
     pub(crate) scope: Scope,
-    /// Demand of the scope.
     pub(crate) presence: Presence,
 }
 
@@ -63,7 +60,6 @@ impl Authored {
         (case.filter(|_| !faulty), reader.findings)
     }
 
-    /// The case in one of the four symmetries.
     pub(crate) fn mirrored<'c>(&'c self, symmetry: Symmetry, league: &'c CaseLeague) -> Mirrored<'c> {
         Mirrored { case: self, symmetry, league }
     }

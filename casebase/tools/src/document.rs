@@ -142,12 +142,10 @@ impl<'f> Reader<'f> {
 }
 
 impl<'t, 'i> Table<'t, 'i> {
-    /// Table of the whole file.
     pub(crate) fn root(root: &'t Spanned<DeTable<'i>>) -> Self {
         Self { keys: root.get_ref(), name: String::new(), span: 0..0 }
     }
 
-    /// The span of the table.
     pub(crate) fn span(&self) -> Range<usize> {
         self.span.clone()
     }
@@ -157,12 +155,10 @@ impl<'t, 'i> Table<'t, 'i> {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
 
-    /// The value of an optional key.
     pub(crate) fn optional(&self, key: &str) -> Option<Value<'t, 'i>> {
         self.keys.get(key)
     }
 
-    /// The value of a required key.
     pub(crate) fn required(&self, reader: &mut Reader<'_>, key: &str) -> Option<Value<'t, 'i>> {
         let value = self.optional(key);
         if value.is_none() {
@@ -172,7 +168,6 @@ impl<'t, 'i> Table<'t, 'i> {
         value
     }
 
-    /// A required whole number.
     pub(crate) fn whole(
         &self,
         reader: &mut Reader<'_>,

@@ -34,7 +34,6 @@ impl SourceFile {
         SourcePlace { file: self.path.clone(), line: self.line(at) }
     }
 
-    /// A finding in this file.
     pub(crate) fn finding(
         &self,
         severity: Severity,

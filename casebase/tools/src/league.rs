@@ -178,7 +178,7 @@ fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Optio
 
 fn read_primitive(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Option<Primitive> {
     let label = reader.text(value, &format!("{name}.primitive"))?;
-    let primitive = Primitive::from_label(label);
+    let primitive = Primitive::from_label(label).filter(|primitive| *primitive != Primitive::Unspecified);
     if primitive.is_none() {
         let known = Primitive::ALL.map(Primitive::label).join(", ");
         let message = format!("{name} asks the body for {label:?}, which no body knows");

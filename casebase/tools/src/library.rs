@@ -54,7 +54,6 @@ pub fn load_with_progress(
     build_with(&Files::read(directory)?, BuildOptions::FULL, on_progress)
 }
 
-/// Options of a build.
 #[derive(Clone, Copy)]
 struct BuildOptions {
     /// Parts of the cases that are kept.

@@ -146,7 +146,6 @@ fn mirrored(problem: &Problem, symmetry: Symmetry) -> Problem {
     }
 }
 
-/// Random stream of one problem.
 struct RandomStream(Xoshiro128PlusPlus);
 
 impl RandomStream {

@@ -106,7 +106,6 @@ fn a_ball_anywhere_finds_every_case_whose_scope_holds_it() {
     }
 }
 
-/// The mirrored problem.
 fn mirrored(problem: &Problem, symmetry: Symmetry) -> Problem {
     Problem {
         ball: symmetry.point(problem.ball),

@@ -46,7 +46,7 @@ pub fn build_for_robot(
     let copied = image.parent().map_or(Ok(()), std::fs::create_dir_all);
     copied
         .and_then(|()| std::fs::copy(&built, &image))
-        .map_err(|error| BuildError::Copy { image: image.clone(), error })?;
+        .map_err(|error| BuildError::Copy(image.clone(), error))?;
     Ok(image)
 }
 
@@ -72,7 +72,7 @@ fn build_as(
 ) -> Result<PathBuf, BuildError> {
     let image = target_dir.join(program.target()).join(PROFILE).join(program.name());
     if let Some(why) = cannot_build(root) {
-        return if image.is_file() { Ok(image) } else { Err(BuildError::NothingToBuild { why, image }) };
+        return if image.is_file() { Ok(image) } else { Err(BuildError::NothingToBuild(why, image)) };
     }
     let toolchain = ensure_target_of(root, program.target()).map_err(BuildError::Target)?;
     let mut build = toolchain.cargo(root, "build");
@@ -100,7 +100,7 @@ fn build_as(
         build.env(SOURCE_HASH, format!("{hash:08x}"));
     }
     run_cargo(&mut build)?;
-    if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
+    if image.is_file() { Ok(image) } else { Err(BuildError::NoImage(image)) }
 }
 
 /// Programs that can be built for the boards: for the emulated one, where not stated otherwise.
@@ -173,7 +173,6 @@ impl Program {
         firmware.map_or(Budget::IMAGE, |firmware| Budget { flash: firmware.flash, ram: firmware.ram })
     }
 
-    /// The board it is for.
     fn package(self) -> &'static str {
         match self {
             Self::Board(board) | Self::More(board, _) => &board.package,
@@ -181,7 +180,6 @@ impl Program {
         }
     }
 
-    /// The target it is built for.
     fn target(self) -> &'static str {
         match self {
             Self::Board(board) | Self::More(board, _) => &board.target,
@@ -227,46 +225,21 @@ pub enum BuildError {
     #[error("the firmware cannot be built: {0}")]
     Target(#[source] TargetError),
     /// The sources or cargo are missing, and there is no earlier build.
-    #[error("the firmware cannot be built: {why}, and there is no image at {}; install rustup and run in a clone of the \
-         project, or set CARGO_TARGET_DIR to where an image was built", image.display())]
-    NothingToBuild {
-        /// Missing sources or tools, as text for the user.
-        why: String,
-        /// Path at which the build was looked for.
-        image: PathBuf,
-    },
-    /// cargo could not be run.
-    #[error("`{command}` does not run: {error}")]
-    Cargo {
-        /// The command that failed.
-        command: String,
-        /// Error with which the start of cargo failed.
-        #[source]
-        error: std::io::Error,
-    },
-    /// The firmware does not compile; the compiler's output is on stderr.
-    #[error("the firmware does not build: `{command}` failed ({status})")]
-    Failed {
-        /// The command that repeats it.
-        command: String,
-        /// Exit status of the command.
-        status: ExitStatus,
-    },
+    #[error("the firmware cannot be built: {0}, and there is no image at {image}; install rustup and run in a clone of the \
+         project, or set CARGO_TARGET_DIR to where an image was built", image = .1.display())]
+    NothingToBuild(String, PathBuf),
+    /// cargo could not be run by this command.
+    #[error("`{0}` does not run: {1}")]
+    Cargo(String, #[source] std::io::Error),
+    /// The firmware does not compile by this command; the compiler's output is on stderr.
+    #[error("the firmware does not build: `{0}` failed ({1})")]
+    Failed(String, ExitStatus),
     /// The image cannot be put where it is kept.
-    #[error("the image cannot be copied to {}: {error}", image.display())]
-    Copy {
-        /// Path at which it is kept.
-        image: PathBuf,
-        /// Error of the copy.
-        #[source]
-        error: std::io::Error,
-    },
+    #[error("the image cannot be copied to {image}: {1}", image = .0.display())]
+    Copy(PathBuf, #[source] std::io::Error),
     /// cargo succeeded, but its output is not where it belongs.
-    #[error("cargo left no image at {}", image.display())]
-    NoImage {
-        /// Path at which it was expected.
-        image: PathBuf,
-    },
+    #[error("cargo left no image at {}", .0.display())]
+    NoImage(PathBuf),
 }
 
 /// Runs cargo with its output on our stderr, except where it had nothing to do: then without output.
@@ -274,7 +247,7 @@ fn run_cargo(build: &mut Command) -> Result<(), BuildError> {
     let color = if std::io::stderr().is_terminal() { "always" } else { "never" };
     build.args(["--color", color]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     let command = line_of(build);
-    let lost = |error| BuildError::Cargo { command: command.clone(), error };
+    let lost = |error| BuildError::Cargo(command.clone(), error);
     let mut child = build.spawn().map_err(lost)?;
     if let Some(stderr) = child.stderr.take() {
         let mut announced = false;
@@ -290,7 +263,7 @@ fn run_cargo(build: &mut Command) -> Result<(), BuildError> {
         }
     }
     let status = child.wait().map_err(lost)?;
-    if status.success() { Ok(()) } else { Err(BuildError::Failed { command, status }) }
+    if status.success() { Ok(()) } else { Err(BuildError::Failed(command, status)) }
 }
 
 /// Obstacle to any build, independent of the compiler.
@@ -339,7 +312,7 @@ mod tests {
         let root = env::temp_dir().join(format!("onetwo-no-sources-{}", std::process::id()));
         let target = root.join("target");
         let Err(error) = build_into(&target, &root, ROBOT) else { panic!("built from nothing") };
-        let BuildError::NothingToBuild { image, .. } = &error else { panic!("{error}") };
+        let BuildError::NothingToBuild(_, image) = &error else { panic!("{error}") };
         let (image, error) = (image.clone(), error.to_string());
         assert!(error.contains("its sources are not here") && error.contains("install rustup"), "{error}");
         fs::create_dir_all(image.parent().unwrap()).unwrap();
@@ -366,7 +339,7 @@ mod tests {
     fn a_build_that_fails_reports_its_command() {
         let error = run_cargo(Command::new(cargo_program()).args(["build", "--package", "no-such-board"]))
             .unwrap_err();
-        let BuildError::Failed { command, status } = &error else { panic!("{error}") };
+        let BuildError::Failed(command, status) = &error else { panic!("{error}") };
         assert!(command.contains("build --package no-such-board") && !status.success());
     }
 }

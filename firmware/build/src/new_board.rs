@@ -19,13 +19,10 @@ pub struct ChipTemplate {
     probe: &'static str,
     /// The target, a triple.
     pub target: &'static str,
-    /// Address of the key page.
     page: &'static str,
     /// Note on the page in the board's README.
     page_note: &'static str,
-    /// Lines of its dependencies.
     dependencies: &'static str,
-    /// The start of the chip.
     init: &'static str,
     /// Memory map, the text of `memory.x`.
     memory: &'static str,
@@ -151,7 +148,6 @@ fn write(file: &Path, content: &str) -> Result<(), NewBoardError> {
     fs::write(file, content).map_err(wrong)
 }
 
-/// The files of the skeleton, in its directory.
 fn files(name: &str, chip: &ChipTemplate) -> Vec<(String, String)> {
     let modules: String =
         chip.sources.iter().filter_map(|(file, _)| file.strip_suffix(".rs")).map(module).collect();

@@ -20,7 +20,6 @@ use crate::MACHINE;
 pub struct OnTarget {
     /// Module and function of the test.
     pub name: String,
-    /// Address of its function.
     address: u32,
     should_panic: bool,
     /// True if the test is not to be run.
@@ -74,7 +73,6 @@ pub fn tests_in(elf: &[u8]) -> Result<Option<Vec<OnTarget>>, NoTests> {
     Ok(Some(tests))
 }
 
-/// A text of the program, by its address in memory.
 fn text_at(file: &object::File<'_>, address: u32, len: u32) -> Option<String> {
     let bytes = file.sections().find_map(|section| section.data_range(address.into(), len.into()).ok()?)?;
     String::from_utf8(bytes.to_vec()).ok()

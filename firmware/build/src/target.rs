@@ -17,7 +17,7 @@ pub fn ensure_target(root: &Path) -> Result<ThumbToolchain, TargetError> {
 
 /// Ensures what [`ensure_target`] does, for any target: a board may have one of its own.
 pub fn ensure_target_of(root: &Path, target: &str) -> Result<ThumbToolchain, TargetError> {
-    output_of(rustc().current_dir(root).arg("-vV")).map_err(|why| TargetError::NoCompiler { why })?;
+    output_of(rustc().current_dir(root).arg("-vV")).map_err(TargetError::NoCompiler)?;
     let missing = |why| TargetError::NoTarget { target: target.to_owned(), why };
     if prebuilt(root, target).is_err() {
         let rustup = in_path("rustup").ok_or_else(|| missing("rustup is not installed".to_owned()))?;
@@ -45,12 +45,9 @@ impl ThumbToolchain {
 /// Reason why this machine cannot build for the robot's processor.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TargetError {
-    /// No Rust compiler was found.
-    #[error("no Rust compiler ({why}); install rustup, then `rustup target add {TARGET}`")]
-    NoCompiler {
-        /// Output of the attempt.
-        why: String,
-    },
+    /// No Rust compiler was found: the output of the attempt.
+    #[error("no Rust compiler ({0}); install rustup, then `rustup target add {TARGET}`")]
+    NoCompiler(String),
     /// The compiler has no `core` for the target, and rustup did not fetch it.
     #[error("nothing here compiles for {target} ({why}); install it with `rustup target add {target}`")]
     NoTarget {
@@ -100,6 +97,6 @@ mod tests {
     #[test]
     fn a_workspace_that_is_not_there_has_no_compiler() {
         let error = ensure_target(Path::new("/no/such/workspace")).unwrap_err();
-        assert!(matches!(error, TargetError::NoCompiler { .. }), "{error}");
+        assert!(matches!(error, TargetError::NoCompiler(_)), "{error}");
     }
 }

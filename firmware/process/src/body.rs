@@ -123,15 +123,11 @@ impl SimulatedBody {
     /// The robot's sensor frame.
     pub fn sensors(&self, now: Instant) -> SensorFrame {
         SensorFrame {
-            pose: None,
-            ball: None,
-            opponents: heapless::Vec::new(),
             ball_contact: self.contact.is_some_and(|(at, contact)| contact && now.since(at) <= CONTACT_HOLDS),
-            busy: false,
             // The protocol does not report its motion, so the commanded one is used.
             odometry: self.motion,
             health: Health { battery: None, tipped: false, kicker_ready: true },
-            camera: None,
+            ..SensorFrame::default()
         }
     }
 

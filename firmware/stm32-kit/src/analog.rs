@@ -54,7 +54,6 @@ impl Analog {
         }
     }
 
-    /// Share of full range.
     fn share(&self, raw: u16) -> f32 {
         f32::from(raw) / f32::from(self.settings.full)
     }

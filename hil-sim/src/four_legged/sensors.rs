@@ -8,7 +8,7 @@
 
 use geometry::{Angle, Body, Field, Point, Pose, Twist, Vector};
 use protocol::Duration;
-use protocol::robot_io::{BallSight, Health, SensorFrame};
+use protocol::robot_io::{BallSight, SensorFrame};
 
 use crate::four_legged::camera::Camera;
 use crate::four_legged::drift::Drift;
@@ -62,15 +62,11 @@ impl Senses {
         let before = self.before.replace(walker.pose);
         let holds = world.holder() == Some(robot);
         let mut frame = SensorFrame {
-            pose: None,
-            ball: None,
             // A team has no more robots than a frame has room for.
             opponents: opponents.into_iter().take(protocol::robot_io::OPPONENTS_SEEN_MAX).collect(),
             ball_contact: holds,
             busy: walker.action.is_some(),
-            odometry: Twist::default(),
-            health: Health::default(),
-            camera: None,
+            ..SensorFrame::default()
         };
         if let Some(noisy) = &mut self.noisy {
             // The legs hold the ball under the head.

@@ -247,7 +247,6 @@ impl<'a> Simulation<'a> {
         self.opponents.iter().map(|opponent| opponent.role)
     }
 
-    /// Applies the faults scheduled for this tick.
     fn apply_faults(&mut self, number: u32) -> Result<(), SimulationError> {
         let due = self.faults.partition_point(|fault| fault.tick <= number);
         for ScheduledFault { fault, .. } in self.faults.drain(..due).collect::<Vec<_>>() {
@@ -298,12 +297,12 @@ impl<'a> Simulation<'a> {
                 air: self.tick.received[first..].iter().map(|received| &received.packet[..]).collect(),
                 sensors,
             };
-            computer.post(&tick).map_err(|error| SimulationError::Computer { robot: id, error })?;
+            computer.post(&tick).map_err(|error| SimulationError::Computer(id, error))?;
         }
         for (i, robot) in self.robots.iter_mut().enumerate() {
             let id = robot.config.robot;
             let Some(computer) = &mut robot.computer else { continue };
-            let reply = computer.collect().map_err(|error| SimulationError::Computer { robot: id, error })?;
+            let reply = computer.collect().map_err(|error| SimulationError::Computer(id, error))?;
             self.worst_instructions = self.worst_instructions.max(reply.instructions);
             self.tick.sent.extend(reply.packets.into_iter().map(|packet| Sent { from: id, packet }));
             if let Some(order) = reply.actuators {
@@ -347,21 +346,15 @@ pub enum SimulationError {
     #[error("robot {0} is named twice or out of order")]
     IdsNotRising(RobotId),
     /// A robot's computer failed.
-    #[error("robot {robot}: {error}")]
-    Computer {
-        /// The robot with that computer.
-        robot: RobotId,
-        /// Error of the computer's back end.
-        #[source]
-        error: McuError,
-    },
+    #[error("robot {0}: {1}")]
+    Computer(RobotId, #[source] McuError),
 }
 
 fn start<'a>(
     backend: &mut (dyn Backend<'a> + 'a),
     config: &BrainConfig,
 ) -> Result<Box<dyn Mcu + 'a>, SimulationError> {
-    backend.boot(config).map_err(|error| SimulationError::Computer { robot: config.robot, error })
+    backend.boot(config).map_err(|error| SimulationError::Computer(config.robot, error))
 }
 
 /// Seconds from kick-off to a physics step of a tick, computed from whole milliseconds.

@@ -23,7 +23,7 @@ impl World {
         let before = self.ball;
         self.ball.advance(&self.parameters.ball, STEP);
         if before.in_the_air() && self.ball.hops != before.hops {
-            self.events.push(PhysicsEvent::Landed { at: self.ball.position });
+            self.events.push(PhysicsEvent::Landed(self.ball.position));
         }
         let near = self.robots_near_ball(&before);
         let (from, mut motion) = (before.position, self.ball.position - before.position);
@@ -234,7 +234,6 @@ impl World {
         }
     }
 
-    /// A ball that lands on a robot hops off it.
     fn land_on_robots(&mut self, before: &Ball, near: &[usize]) {
         for &i in near {
             let top = self.robots[i].body.height;
@@ -313,7 +312,7 @@ impl World {
                 let of = &self.parameters.bounce;
                 let impact = Impact { restitution: bounce, friction: of.friction, spin: of.spin, share: 1.0 };
                 self.ball.bounce(normal, Vector::default(), impact);
-                self.events.push(PhysicsEvent::BoardHit { at: self.ball.position });
+                self.events.push(PhysicsEvent::BoardHit(self.ball.position));
             }
         }
     }

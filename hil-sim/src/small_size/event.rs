@@ -47,14 +47,8 @@ pub enum PhysicsEvent {
         /// The ball's speed, m/s.
         speed: f32,
     },
-    /// The ball hit a board round the field surface.
-    BoardHit {
-        /// The ball's position, m.
-        at: Point<Field>,
-    },
-    /// A flying ball landed.
-    Landed {
-        /// The ball's position, m.
-        at: Point<Field>,
-    },
+    /// The ball hit a board round the field surface, at this position, m.
+    BoardHit(Point<Field>),
+    /// A flying ball landed, at this position, m.
+    Landed(Point<Field>),
 }

@@ -13,7 +13,6 @@ use super::robot::{Odometer, Robot};
 use crate::rng::Stream;
 use protocol::Who;
 
-/// The sensors of one robot.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Senses {
     noise: NoiseParameters,
@@ -34,11 +33,7 @@ impl Senses {
         let scale = self.deviation(self.noise.odometry);
         let drift = self.deviation(self.noise.gyro);
         SensorFrame {
-            pose: None,
-            ball: None,
-            opponents: heapless::Vec::new(),
             ball_contact: robot.ball_contact,
-            busy: false,
             odometry: Twist {
                 linear: Vector::new(x, y) * (1.0 + scale),
                 angular: odometer.turned * mean + drift,
@@ -49,7 +44,7 @@ impl Senses {
                 tipped: robot.tipped,
                 kicker_ready: robot.charged(now),
             },
-            camera: None,
+            ..SensorFrame::default()
         }
     }
 

@@ -8,7 +8,6 @@ use hil_sim::four_legged::world::{LeggedWorld, Side};
 
 use crate::report::{ActivityReport, in_seconds};
 
-/// State of the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Activity {
     Pause,

@@ -1,7 +1,7 @@
 //! `cycles`: log of a team's retrieve–reuse cycles. Derived from overheard beacons alone (paper §4;
 //! docs/architecture.md §5).
 
-use protocol::team::{AbortReason, Closure, CycleState, Decision, Play, ShotRule};
+use protocol::team::{Closure, CycleState, Decision, Play, ShotRule};
 use protocol::{CycleId, RobotId};
 
 /// A cycle as seen from outside.
@@ -60,7 +60,7 @@ impl CycleEnd {
         match self {
             Self::Closed(Closure::Finished) => Self::FINISHED,
             Self::Closed(Closure::NoCase) => "no-case",
-            Self::Closed(Closure::Aborted { reason, .. }) => abort_label(reason),
+            Self::Closed(Closure::Aborted { reason, .. }) => reason.label(),
             Self::Superseded => "superseded",
             Self::TrialOver => "trial-over",
         }
@@ -69,30 +69,9 @@ impl CycleEnd {
 
 /// The label of the rule of a shot; none where it did not come to one.
 pub(crate) const fn shot_label(rule: ShotRule) -> Option<&'static str> {
-    Some(match rule {
-        ShotRule::NoShot => return None,
-        ShotRule::Leg => "leg",
-        ShotRule::Likelier => "likelier-shot",
-        ShotRule::Gap => "waited-for-gap",
-        ShotRule::PushOn => "pushed-on",
-        ShotRule::OutOfTime => "out-of-time",
-        ShotRule::Pressed => "pressed",
-    })
-}
-
-const fn abort_label(reason: AbortReason) -> &'static str {
-    match reason {
-        AbortReason::BallOutOfScope => "ball-out-of-scope",
-        AbortReason::PathBlocked => "path-blocked",
-        AbortReason::RobotLost => "robot-lost",
-        AbortReason::ActionFailed => "action-failed",
-        AbortReason::OpponentOnBall => "opponent-on-ball",
-        AbortReason::BallAtRest => "ball-at-rest",
-        AbortReason::Timeout => "timeout",
-        AbortReason::NoDecision => "no-decision",
-        AbortReason::UnknownCase => "unknown-case",
-        AbortReason::Reassigned => "reassigned",
-        AbortReason::GameStopped => "game-stopped",
+    match rule {
+        ShotRule::NoShot => None,
+        rule => Some(rule.label()),
     }
 }
 
@@ -184,6 +163,7 @@ impl CycleLog {
 mod tests {
     use protocol::CaseId;
     use protocol::quantized::WirePoint;
+    use protocol::team::AbortReason;
 
     use super::*;
 
@@ -237,22 +217,8 @@ mod tests {
 
     #[test]
     fn the_list_of_labels_has_every_end_of_a_play() {
-        use AbortReason as Why;
-        let by = robot(1);
-        let aborted = [
-            Why::BallOutOfScope,
-            Why::PathBlocked,
-            Why::RobotLost,
-            Why::ActionFailed,
-            Why::OpponentOnBall,
-            Why::BallAtRest,
-            Why::Timeout,
-            Why::NoDecision,
-            Why::UnknownCase,
-            Why::Reassigned,
-            Why::GameStopped,
-        ];
-        let aborted = aborted.map(|reason| CycleEnd::Closed(Closure::Aborted { by, reason }));
+        let aborted = |reason| CycleEnd::Closed(Closure::Aborted { by: robot(1), reason });
+        let aborted = AbortReason::ALL.map(aborted);
         let all = [CycleEnd::Closed(Closure::Finished)].into_iter().chain(aborted);
         let all = all.chain([CycleEnd::Superseded, CycleEnd::TrialOver]);
         assert_eq!(all.map(CycleEnd::label).collect::<Vec<_>>(), CycleEnd::LABELS);

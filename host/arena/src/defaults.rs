@@ -25,7 +25,6 @@ pub(crate) struct DefaultWatch {
 }
 
 impl DefaultWatch {
-    /// Counts one tick.
     pub(crate) fn tick(&mut self) {
         self.ticks += u32::from(self.active);
     }

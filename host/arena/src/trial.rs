@@ -304,7 +304,6 @@ impl<'c, 'a> Game<'c, 'a> {
         }
     }
 
-    /// Ends the trial: returns its report and passes it to the watchers.
     pub(crate) fn end(mut self, verdict: TrialVerdict, watchers: &mut [&mut dyn Watcher]) -> TrialReport {
         self.cycles.finish(verdict.time);
         let report = self.report(verdict);

@@ -142,7 +142,6 @@ fn by_thresholds(seed: u64, seconds: f64) -> GameConfig {
     config
 }
 
-/// Which link fails.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fails {
     Vision,

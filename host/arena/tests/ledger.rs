@@ -15,7 +15,6 @@ use rules::{Colour, League, Phase};
 
 /// Length of the match, s.
 const SECONDS: f64 = 150.0;
-const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];
 
 /// The same match by other means: logs of beacons, goals of the referee's accounts, kicks of the physics.
 #[derive(Default)]
@@ -31,7 +30,7 @@ struct Witness {
 impl Watcher for Witness {
     fn tick(&mut self, game: &Game<'_>) {
         let now = game.time();
-        for colour in COLOURS {
+        for colour in Colour::ALL {
             let log = &mut self.logs[colour as usize];
             for robot in RobotId::all() {
                 if let Some(state) = game.host(colour).beacon(robot).and_then(|beacon| beacon.cycle.as_ref())
@@ -87,7 +86,7 @@ fn the_ledger_agrees_with_beacons_referee_and_physics() {
     let names = CaseNames::new(case_library::league("division-b").unwrap().names.iter().copied());
     for seed in [5, 11] {
         let (report, witness) = witnessed(seed);
-        for (colour, metrics) in COLOURS.into_iter().zip([&report.metrics.yellow, &report.metrics.blue]) {
+        for (colour, metrics) in Colour::ALL.into_iter().zip([&report.metrics.yellow, &report.metrics.blue]) {
             let (log, table) = (&witness.logs[colour as usize], &metrics.cases);
             same_cycles(log, table, &names);
             sums_agree(table);

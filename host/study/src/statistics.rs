@@ -259,6 +259,22 @@ pub fn holm(family: &[f64]) -> Vec<f64> {
     adjusted
 }
 
+/// The same for tests of several families: `None` for a test that was not made.
+pub(crate) fn holm_by_family<F: PartialEq>(tests: &[(F, Option<f64>)]) -> Vec<Option<f64>> {
+    let mut corrected = vec![None; tests.len()];
+    for (place, (own, _)) in tests.iter().enumerate() {
+        if tests[..place].iter().any(|(family, _)| family == own) {
+            continue;
+        }
+        let of_family = tests.iter().enumerate().filter(|(_, (family, _))| family == own);
+        let (members, p): (Vec<_>, Vec<_>) = of_family.filter_map(|(i, (_, p))| Some((i, (*p)?))).unzip();
+        for (member, p) in members.into_iter().zip(holm(&p)) {
+            corrected[member] = Some(p);
+        }
+    }
+    corrected
+}
+
 /// Stars of a p value.
 pub fn stars(p: Option<f64>) -> &'static str {
     match p {

@@ -88,7 +88,7 @@ fn threads_shards_and_interrupts_change_nothing() {
     let other: Result<JournalPlayer<'_>, _> =
         JournalPlayer::open(&two, "{\"run\":2}", Shard::WHOLE, 4, &STOPPED, &|_| {});
     let error = other.unwrap_err();
-    assert!(matches!(error, PlayError::OtherRun { .. }), "{error}");
+    assert!(matches!(error, PlayError::OtherRun(..)), "{error}");
     assert!(
         error
             .to_string()

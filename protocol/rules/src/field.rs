@@ -279,6 +279,14 @@ mod tests {
     }
 
     #[test]
+    fn a_goal_inside_is_18_cm_deep_16_high_and_1_8_or_1_m_wide() {
+        for (league, width) in [(League::DivisionA, 1.8), (League::DivisionB, 1.0)] {
+            let field = league.field();
+            assert_eq!((field.goal_width, field.goal_depth, field.goal_height), (width, 0.18, 0.16));
+        }
+    }
+
+    #[test]
     fn a_penalty_of_division_b_is_taken_6_m_from_the_goal() {
         let field = League::DivisionB.field();
         assert_eq!(field.penalty_spot(GoalEnd::Positive), Point::new(-1.5, 0.0));

@@ -88,17 +88,12 @@ impl League {
                 width: 4.0,
                 margin: 0.25,
                 goal_line_margin: 0.25,
-                goal_substitution: 0.0,
                 goal_width: 0.7,
-                goal_depth: 0.18,
-                goal_height: 0.16,
-                goal_wall: 0.02,
                 penalty_depth: 0.8,
                 penalty_width: 1.95,
                 penalty_form: AreaForm::QuarterCircles,
                 penalty_mark: 0.75,
-                center_radius: 0.5,
-                line_width: 0.01,
+                ..Self::DivisionB.field()
             },
             Self::DivisionB => FieldSpec {
                 length: 9.0,
@@ -120,19 +115,13 @@ impl League {
             Self::DivisionA => FieldSpec {
                 length: 12.0,
                 width: 9.0,
-                margin: 0.3,
                 goal_line_margin: 0.6,
                 goal_substitution: 0.3,
                 goal_width: 1.8,
-                goal_depth: 0.18,
-                goal_height: 0.16,
-                goal_wall: 0.02,
                 penalty_depth: 1.8,
                 penalty_width: 3.6,
-                penalty_form: AreaForm::Box,
                 penalty_mark: 8.0,
-                center_radius: 0.5,
-                line_width: 0.01,
+                ..Self::DivisionB.field()
             },
         }
     }

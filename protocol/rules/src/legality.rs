@@ -84,16 +84,6 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
     }
 }
 
-/// Returns whether all of the ball is in this goal: over the line, between the posts, under the upper edge of
-/// the walls.
-pub fn ball_in_goal(field: &FieldSpec, goal: GoalEnd, ball: Point<Field>, height: f32) -> bool {
-    let depth = (ball.x() - field.goal_line(goal)) * goal.sign() as f32;
-    depth > beyond(field)
-        && depth <= field.goal_depth
-        && ball.y().abs() < field.goal_width * 0.5
-        && height < field.goal_height
-}
-
 /// Reason why a ball in the goal is no goal (scoring goals).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoGoal {

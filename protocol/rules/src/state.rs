@@ -47,6 +47,20 @@ pub enum RefereeCommand {
 }
 
 impl RefereeCommand {
+    /// Every command, those of teams for each team.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let of_teams = Colour::ALL.into_iter().flat_map(|team| {
+            [
+                Self::PrepareKickoff(team),
+                Self::PreparePenalty(team),
+                Self::FreeKick(team),
+                Self::Timeout(team),
+                Self::BallPlacement(team),
+            ]
+        });
+        [Self::Halt, Self::Stop, Self::NormalStart, Self::ForceStart].into_iter().chain(of_teams)
+    }
+
     /// The phase that it leads to; `None` for NORMAL_START without a preparation.
     pub const fn leads_to(self, from: Phase<Colour>) -> Option<Phase<Colour>> {
         Some(match self {
@@ -118,18 +132,6 @@ impl Stage {
         Self::ShootOut,
         Self::PostGame,
     ];
-
-    /// Returns whether the clock of the match can run in this stage.
-    pub const fn is_played(self) -> bool {
-        matches!(
-            self,
-            Self::FirstHalf
-                | Self::SecondHalf
-                | Self::ExtraFirstHalf
-                | Self::ExtraSecondHalf
-                | Self::ShootOut
-        )
-    }
 
     /// Returns whether teams pause and team members may enter the field.
     pub const fn is_break(self) -> bool {

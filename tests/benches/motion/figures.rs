@@ -16,7 +16,6 @@ pub(crate) struct Figure {
     pub(crate) host: Option<u64>,
 }
 
-/// The figures of all workloads.
 #[derive(Clone, Debug)]
 pub(crate) struct Figures(pub(crate) Vec<Figure>);
 
@@ -33,7 +32,6 @@ impl Figures {
         Self(Work::ALL.into_iter().enumerate().map(figure).collect())
     }
 
-    /// The budgets that are exceeded.
     pub(crate) fn broken(&self) -> Vec<String> {
         let mut broken = Vec::new();
         for Figure { work, mean, worst, host, .. } in &self.0 {
@@ -70,7 +68,6 @@ impl Figures {
     }
 }
 
-/// Maximum instructions.
 struct Limits {
     mean: u64,
     worst: u64,

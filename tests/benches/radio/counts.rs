@@ -57,7 +57,6 @@ fn limit(bytes: u32) -> Option<u32> {
     }
 }
 
-/// The budgets that are exceeded.
 pub(crate) fn broken(counts: &[Count]) -> Vec<String> {
     let over = counts.iter().filter_map(|Count { work, bytes, worst }| {
         let limit = limit(*bytes).filter(|limit| worst > limit)?;

@@ -76,7 +76,6 @@ impl Figures {
         self.guest[2].mean / self.guest[0].mean
     }
 
-    /// The budgets that are exceeded.
     pub(crate) fn broken(&self) -> Vec<String> {
         let Self { stored, set, guest: [best, ..], .. } = self;
         let mut broken = Vec::new();

@@ -9,7 +9,6 @@ use firmware_build::Program;
 use firmware_build::count::CountingImage;
 use workloads::retrieval::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, encode, header, scan};
 
-/// The image.
 pub(crate) struct Board(CountingImage);
 
 impl Board {
@@ -17,7 +16,6 @@ impl Board {
         CountingImage::new(Program::RetrievalBench).map(Self)
     }
 
-    /// The answers to all problems, in order.
     pub(crate) fn answers(&self, table: &[u8], problems: &[Problem]) -> Result<Vec<Answer>, String> {
         let directory = Directory::new()?;
         let (table_file, problem_file) = (directory.0.join("table"), directory.0.join("problems"));

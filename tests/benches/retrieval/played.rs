@@ -50,7 +50,6 @@ impl<'a> Backend<'a> for Recorder<'a> {
 
 struct Robot<'a> {
     native: NativeMcu<'a>,
-    /// The cycle it decided last.
     decided: Option<CycleId>,
     problems: Rc<RefCell<Vec<Problem>>>,
 }

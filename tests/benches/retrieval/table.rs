@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use crate::figures::{Figures, Spread};
 
-/// All figures as a table.
 pub(crate) fn table(all: &[Figures]) -> String {
     let mut text = format!("{HEAD}\n");
     for figures in all {
@@ -13,7 +12,6 @@ pub(crate) fn table(all: &[Figures]) -> String {
     text
 }
 
-/// One line of it.
 pub(crate) fn row(figures: &Figures) -> String {
     let [best, counted, scan] = figures.guest;
     let spread =
@@ -38,7 +36,6 @@ pub(crate) fn row(figures: &Figures) -> String {
     )
 }
 
-/// A number with its thousands apart.
 fn n(number: u32) -> String {
     let digits = number.to_string();
     let mut text = String::new();

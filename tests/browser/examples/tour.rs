@@ -30,7 +30,6 @@ fn main() -> ExitCode {
     }
 }
 
-/// The program and its page.
 struct LayerState {
     child: Child,
     address: String,

@@ -78,7 +78,6 @@ pub fn legs(library: &Library, case: &Case, ball: Point) -> Result<Vec<Leg>, Str
     }
 }
 
-/// End of the kick.
 fn kicked(library: &Library, case: &Case, kick: Kick, from: (f64, f64)) -> (f64, f64) {
     let attack = case.defending.attack() as f64;
     match kick.aim {

@@ -105,7 +105,6 @@ struct Computer<'a> {
     tick_ms: u32,
     trouble: Span,
     adversary: Adversary,
-    /// With the sensor frame at its start.
     sensor_faults: Vec<(Span, SensorFault, Option<SensorFrame>)>,
     shared: Rc<RefCell<Shared>>,
     reply: Reply,

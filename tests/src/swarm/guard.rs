@@ -296,7 +296,6 @@ mod tests {
         Believed::Host(HostMessage::Command(drive_on(RobotId::new(1).unwrap())))
     }
 
-    /// An order to drive straight on with that speed.
     fn order(speed: f32, kick: OmniKick) -> ActuatorFrame {
         let twist = Twist { linear: geometry::Vector::new(speed, 0.0), angular: 0.0 };
         ActuatorFrame::Omni { wheels: Omni::default().rims(twist), dribbler: 0.0, kick }

@@ -13,61 +13,42 @@ use protocol::frame::TeamKey;
 use protocol::{RobotId, TeamId};
 use rules::League;
 
-/// A kind of fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Fault {
-    /// Packets are lost independently, up to half of them.
-    Loss,
-    /// Packets are lost in bursts.
-    Bursts,
-    /// Packets are duplicated, up to half of them.
-    Duplication,
-    /// Packets overtake each other.
-    Reordering,
-    /// Packets have a long delay.
-    Delay,
-    /// The team is partitioned into two parts that do not receive each other.
-    Partition,
-    /// Robots' computers crash and reboot.
-    Reboot,
-    /// Robots' clocks run 100 ppm fast or slow, and started long ago.
-    Skew,
-    /// A second host sends with the team's key.
-    SecondHost,
-    /// Earlier packets are sent again: from this epoch of the receiver, from an earlier one, and from an
-    /// earlier match.
-    Replays,
-    /// Other teams are on the radio, and a sender who guesses keys.
-    Foreign,
-    /// Bits of packets flip.
-    FlippedBits,
-    /// A sensor repeats the same values.
-    Stuck,
-    /// A sensor reports NaN.
-    NotANumber,
-    /// A robot lies on its side, spins, or has an empty battery.
-    Body,
-}
-
-impl Fault {
-    /// All faults, in the order of their draws.
-    pub const ALL: [Self; 15] = [
-        Self::Loss,
-        Self::Bursts,
-        Self::Duplication,
-        Self::Reordering,
-        Self::Delay,
-        Self::Partition,
-        Self::Reboot,
-        Self::Skew,
-        Self::SecondHost,
-        Self::Replays,
-        Self::Foreign,
-        Self::FlippedBits,
-        Self::Stuck,
-        Self::NotANumber,
-        Self::Body,
-    ];
+geometry::labels! {
+    /// A kind of fault.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Fault {
+        /// Packets are lost independently, up to half of them.
+        Loss = "Loss",
+        /// Packets are lost in bursts.
+        Bursts = "Bursts",
+        /// Packets are duplicated, up to half of them.
+        Duplication = "Duplication",
+        /// Packets overtake each other.
+        Reordering = "Reordering",
+        /// Packets have a long delay.
+        Delay = "Delay",
+        /// The team is partitioned into two parts that do not receive each other.
+        Partition = "Partition",
+        /// Robots' computers crash and reboot.
+        Reboot = "Reboot",
+        /// Robots' clocks run 100 ppm fast or slow, and started long ago.
+        Skew = "Skew",
+        /// A second host sends with the team's key.
+        SecondHost = "SecondHost",
+        /// Earlier packets are sent again: from this epoch of the receiver, from an earlier one, and from an
+        /// earlier match.
+        Replays = "Replays",
+        /// Other teams are on the radio, and a sender who guesses keys.
+        Foreign = "Foreign",
+        /// Bits of packets flip.
+        FlippedBits = "FlippedBits",
+        /// A sensor repeats the same values.
+        Stuck = "Stuck",
+        /// A sensor reports NaN.
+        NotANumber = "NotANumber",
+        /// A robot lies on its side, spins, or has an empty battery.
+        Body = "Body",
+    }
 }
 
 /// The robots of a run.
@@ -281,7 +262,7 @@ impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let robots: Vec<String> = self.ids().map(|id| id.to_string()).collect();
         write!(f, "{:?} {}: ", self.squad, robots.join(" "))?;
-        let faults: Vec<String> = self.on.iter().map(|fault| format!("{fault:?}")).collect();
+        let faults: Vec<_> = self.on.iter().map(|fault| fault.label()).collect();
         let faults = if faults.is_empty() { "nothing".into() } else { faults.join(", ") };
         write!(f, "{faults} from {} to {} ms", self.trouble.from, self.trouble.to)
     }

@@ -31,7 +31,6 @@ impl Script {
         Self::within(plan.trouble, &mut Stream::new(plan.seed, "swarm script"))
     }
 
-    /// The script of its second host.
     pub(super) fn drawn_for_second(plan: &Plan) -> Self {
         Self::within(plan.trouble, &mut Stream::new(plan.seed, "swarm second script"))
     }
@@ -57,7 +56,6 @@ impl Script {
     }
 }
 
-/// A host.
 pub(super) struct Headquarters {
     radio: Radio,
     us: Colour,
@@ -96,7 +94,6 @@ impl Headquarters {
         self.radio.offer(now, &seen(now, truth), situation, &commands);
     }
 
-    /// Sends the queued packets.
     pub(super) fn speak(&mut self, mut send: impl FnMut(Option<RobotId>, &Packet)) {
         while let Some((to, packet)) = self.radio.poll_packet() {
             match to {

@@ -71,7 +71,6 @@ impl TeamWatch {
         }
     }
 
-    /// A robot sent this packet.
     pub(super) fn note_sent(&mut self, ms: u32, plan: &Plan, packet: &Packet) {
         let Ok((from, TeamMessage::Beacon(beacon))) = overhear(packet, TEAM, &plan.key.of_team()) else {
             return;
@@ -153,7 +152,6 @@ impl TeamWatch {
         self.found.clone().map_or(Ok(()), Err)
     }
 
-    /// The results of the run.
     pub(super) fn counters(&self) -> Counters {
         let Watcher { cycles, gameplays, overlaps, .. } = self.watcher;
         Counters { cycles, gameplays, overlaps, ..self.counters }

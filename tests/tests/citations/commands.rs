@@ -9,7 +9,6 @@ use match_tests::workspace::{Finding, Source, members, root, rust_sources};
 use crate::prose::Quoted;
 use crate::sections::page;
 
-/// The commands that exist.
 pub(crate) struct Known {
     /// Verbs of the program, each with the verbs below it.
     verbs: BTreeMap<String, BTreeSet<String>>,
@@ -21,7 +20,6 @@ pub(crate) struct Known {
     tasks: Vec<String>,
     /// The source that contains their flags.
     xtask: String,
-    /// Directories of packages.
     packages: BTreeMap<String, String>,
 }
 

@@ -10,7 +10,6 @@ use crate::prose::Quoted;
 pub(crate) struct Names(BTreeMap<String, BTreeSet<String>>);
 
 impl Names {
-    /// Those of the workspace.
     pub(crate) fn read() -> Self {
         let sources = rust_sources();
         let of = |directory: &str| {
@@ -34,7 +33,6 @@ impl Names {
     }
 }
 
-/// Names that a file defines.
 fn defined(text: &str) -> impl Iterator<Item = String> {
     text.lines().filter_map(|line| {
         let mut words = line.split_whitespace().skip_while(|label| {

@@ -13,7 +13,6 @@ pub(crate) trait Lookup {
     fn text(&self, path: &Path) -> Option<String>;
 }
 
-/// The files on disk.
 pub(crate) struct Files;
 
 impl Lookup for Files {

@@ -149,7 +149,6 @@ const OUTSIDE: [&str; 4] = [
 ];
 const ISSUES: [&str; 3] = [concat!("issue", " "), concat!("Issue", " "), concat!("issue", " #")];
 
-/// A page by its path from the root.
 pub(crate) fn page(path: &str) -> Source {
     Source::read(&root().join(path))
 }

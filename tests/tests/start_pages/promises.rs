@@ -6,14 +6,12 @@
 pub(crate) const PAGES: [&str; 3] =
     ["docs/start/league-team.md", "docs/start/cbr-researcher.md", "docs/start/embedded.md"];
 
-/// The lines of each block of that kind.
 pub(crate) fn blocks<'t>(text: &'t str, kind: &str) -> Vec<Vec<&'t str>> {
     let head = format!("{kind}\n");
     let blocks = text.split("```").filter_map(|block| block.strip_prefix(&head));
     blocks.map(|block| block.lines().collect()).collect()
 }
 
-/// A promise of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Promise {
     /// Its output holds this.

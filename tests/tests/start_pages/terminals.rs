@@ -51,7 +51,6 @@ impl Drop for Written {
     }
 }
 
-/// Runs the lines of a block.
 pub(crate) fn block(lines: &[&str]) {
     let mut running: Vec<Terminal> = Vec::new();
     for line in lines {

@@ -146,7 +146,6 @@ fn resolve(own: &Module, path: &[String], files: &BTreeMap<Module, &Source>) -> 
     (!module.is_empty()).then_some(module)
 }
 
-/// Sets of files of which each reaches each.
 fn circles(graph: &Graph) -> BTreeSet<BTreeSet<Module>> {
     let reached: BTreeMap<&Module, BTreeSet<&Module>> =
         graph.keys().map(|from| (from, reachable(graph, from))).collect();

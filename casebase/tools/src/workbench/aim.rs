@@ -2,12 +2,13 @@
 //! to there. mm, field frame.
 
 use casebase::plan_simulation::{PlanStep, Script, Spot, plan_simulation};
-use casebase::{Action, CaseRobot, GoalEnd, PointMm, Symmetry};
+use casebase::{Action, CaseRobot, PointMm, Symmetry};
 
 use super::action_text::ActionText;
 use super::edit::Edit;
+use super::follow::Changed;
 use super::part::Part;
-use crate::authored::{Authored, Mirrored};
+use crate::authored::Authored;
 use crate::league::CaseLeague;
 
 /// The change of a pass or a kick whose end is moved; none where something else is.
@@ -28,9 +29,10 @@ pub(super) fn aimed(case: &Authored, league: &CaseLeague, edit: &Edit) -> Option
             let mut nearest: Option<(f32, &String)> = None;
             for (kind, _) in &league.kicks {
                 let case = case.mirrored(Symmetry::Identity, league);
-                let kick =
-                    league.kick_id(kind).map(|id| Instead { case, kicker, index, kick: Action::Kick(id) });
-                let Some(end) = kick.and_then(|kick| end_of(&kick, league)) else { continue };
+                let Some(id) = league.kick_id(kind) else { continue };
+                let changed =
+                    Changed { case, place: (kicker, index), action: Action::Kick(id), is_cut: false };
+                let Some(end) = end_of(&changed, league) else { continue };
                 let distance = square(end, to);
                 if nearest.is_none_or(|(least, _)| distance < least) {
                     nearest = Some((distance, kind));
@@ -49,39 +51,12 @@ fn square(at: [f32; 2], to: PointMm) -> f32 {
     (at[0] - x) * (at[0] - x) + (at[1] - y) * (at[1] - y)
 }
 
-/// A case with another kick in the place of one action.
-struct Instead<'c> {
-    case: Mirrored<'c>,
-    kicker: CaseRobot,
-    index: usize,
-    kick: Action,
-}
-
-impl Script for Instead<'_> {
-    fn teammates(&self) -> usize {
-        self.case.teammates()
-    }
-    fn defending(&self) -> GoalEnd {
-        self.case.defending()
-    }
-    fn ball(&self) -> PointMm {
-        self.case.ball()
-    }
-    fn position(&self, robot: CaseRobot) -> PointMm {
-        self.case.position(robot)
-    }
-    fn action(&self, robot: CaseRobot, index: usize) -> Option<Action> {
-        let replaced = (robot, index) == (self.kicker, self.index);
-        if replaced { Some(self.kick) } else { self.case.action(robot, index) }
-    }
-}
-
 /// End of that kick, mm, field frame.
-fn end_of(script: &Instead<'_>, league: &CaseLeague) -> Option<[f32; 2]> {
+fn end_of(script: &Changed<'_>, league: &CaseLeague) -> Option<[f32; 2]> {
     let mut end: Option<Spot> = None;
     let _ = plan_simulation(script, league, |step| {
         if let PlanStep::Leg { robot, action, to, .. } = step
-            && (robot, action) == (script.kicker, script.index)
+            && (robot, action) == script.place
         {
             end = Some(to);
         }

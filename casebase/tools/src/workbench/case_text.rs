@@ -24,7 +24,6 @@ impl CaseText {
         })
     }
 
-    /// The text as it is now.
     pub(super) fn text(&self) -> String {
         self.document.to_string()
     }
@@ -173,7 +172,6 @@ impl CaseText {
         gameplay.map_or_else(Vec::new, |array| array.iter().filter_map(read).collect())
     }
 
-    /// An action of a robot.
     pub(super) fn action(&self, robot: usize, number: usize) -> Result<ActionText, EditError> {
         let gameplay = self.entry("teammates", robot).and_then(|table| table.get("gameplay")?.as_array());
         let value = gameplay.zip(number.checked_sub(1)).and_then(|(array, index)| array.get(index));
@@ -213,7 +211,6 @@ impl CaseText {
         Ok(())
     }
 
-    /// Takes an action out.
     pub(super) fn remove_action(&mut self, robot: usize, number: usize) -> Result<Value, EditError> {
         let gameplay = self.gameplay(robot)?;
         let index = number.checked_sub(1).filter(|index| *index < gameplay.len());
@@ -295,7 +292,6 @@ fn table(pairs: [(&str, Value); 2]) -> Table {
     table
 }
 
-/// An action of the file as data.
 fn read(value: &Value) -> Option<ActionText> {
     let mut value = value.clone();
     // Comments before it are not part of it.

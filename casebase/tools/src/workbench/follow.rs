@@ -53,7 +53,10 @@ fn choices(case: &Authored, league: &CaseLeague, robot: CaseRobot, index: usize)
 }
 
 fn allowed(case: &Authored, league: &CaseLeague, robot: CaseRobot, index: usize, action: Action) -> bool {
-    let cut = |last| Cut { case: case.mirrored(Symmetry::Identity, league), robot, index, last };
+    let cut = |action| {
+        let case = case.mirrored(Symmetry::Identity, league);
+        Changed { case, place: (robot, index), action, is_cut: true }
+    };
     match action {
         Action::Wait | Action::Turn(_) | Action::GoToPoint(_) => true,
         // One robot alone begins with the ball.
@@ -77,9 +80,9 @@ struct LastAction {
     received: bool,
 }
 
-impl Cut<'_> {
+impl Changed<'_> {
     fn simulate(&self, league: &CaseLeague) -> LastAction {
-        let here = (self.robot, self.index);
+        let here = self.place;
         let (mut played, mut received) = (false, false);
         let outcome = plan_simulation(self, league, |step| match step {
             PlanStep::Leg { robot, action, .. } => played |= (robot, action) == here,
@@ -90,15 +93,16 @@ impl Cut<'_> {
     }
 }
 
-/// A case in which one robot's list is cut, and ends with another action.
-struct Cut<'c> {
-    case: Mirrored<'c>,
-    robot: CaseRobot,
-    index: usize,
-    last: Action,
+/// A case with another action in the place of one; where it is cut, that robot's list ends there.
+pub(super) struct Changed<'c> {
+    pub(super) case: Mirrored<'c>,
+    /// The robot, and the index in its list.
+    pub(super) place: (CaseRobot, usize),
+    pub(super) action: Action,
+    pub(super) is_cut: bool,
 }
 
-impl Script for Cut<'_> {
+impl Script for Changed<'_> {
     fn teammates(&self) -> usize {
         self.case.teammates()
     }
@@ -112,9 +116,10 @@ impl Script for Cut<'_> {
         self.case.position(robot)
     }
     fn action(&self, robot: CaseRobot, index: usize) -> Option<Action> {
-        if robot != self.robot || index < self.index {
-            return self.case.action(robot, index);
+        if (robot, index) == self.place {
+            return Some(self.action);
         }
-        (index == self.index).then_some(self.last)
+        let is_behind = self.is_cut && robot == self.place.0 && index > self.place.1;
+        if is_behind { None } else { self.case.action(robot, index) }
     }
 }

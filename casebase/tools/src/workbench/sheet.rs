@@ -133,7 +133,6 @@ pub struct LegSheet {
     pub kind: &'static str,
 }
 
-/// The actions of every robot.
 pub(super) fn robots(case: &Authored, league: &CaseLeague) -> Vec<RobotSheet> {
     let all = CaseRobot::first(case.teammates.len()).zip(&case.teammates);
     all.map(|(robot, teammate)| RobotSheet {

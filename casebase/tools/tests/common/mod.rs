@@ -188,7 +188,6 @@ impl Dice {
         text
     }
 
-    /// A random library.
     pub(crate) fn library(&mut self, cases: usize) -> Library {
         let texts: Vec<_> = (0..cases).map(|i| (format!("drawn/{i:04}"), self.case())).collect();
         let borrowed: Vec<_> = texts.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();

@@ -70,7 +70,6 @@ pub(crate) const FRAME_LEN_MIN: usize = 60;
 /// Bytes of a frame's checksum, which the controller hands over with it.
 pub(crate) const CHECKSUM_LEN: usize = 4;
 
-/// A register of the controller.
 const fn register(offset: usize) -> Register {
     // SAFETY: every register below is one of this board's Ethernet controller (MPS2 AN386: at 0x4020_0000).
     unsafe { Register::at(0x4020_0000 + offset) }

@@ -25,7 +25,6 @@ pub struct Image<'a> {
 
 type Reader<'a> = EndianSlice<'a, RunTimeEndian>;
 
-/// A section of memory.
 #[derive(Clone, Debug)]
 struct Section {
     address: u64,
@@ -41,7 +40,6 @@ impl Section {
     }
 }
 
-/// A function or a value.
 #[derive(Clone, Debug)]
 struct Symbol {
     name: String,

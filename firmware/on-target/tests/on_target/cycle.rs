@@ -4,9 +4,9 @@
 #[embedded_test::tests]
 mod tests {
     use brain::{Brain, BrainConfig};
-    use geometry::{Angle, Point, Pose, Twist};
+    use geometry::{Angle, Point, Pose};
     use heapless::Vec;
-    use protocol::robot_io::{ActuatorFrame, BallSight, Health, SensorFrame};
+    use protocol::robot_io::{ActuatorFrame, BallSight, SensorFrame};
     use protocol::team::{AbortReason, Closure, Decision, Progress, TeamMessage};
     use protocol::{Duration, Instant, RobotId, TeamId};
 
@@ -87,12 +87,7 @@ mod tests {
             let sensors = SensorFrame {
                 pose: Some(Pose { position: at, heading: Angle::ZERO }),
                 ball: Some(BallSight { position: ball, sigma: 0.01, age: Duration(0) }),
-                opponents: Vec::new(),
-                ball_contact: false,
-                busy: false,
-                odometry: Twist::default(),
-                health: Health::default(),
-                camera: None,
+                ..SensorFrame::default()
             };
             self.brain.handle_sensors(self.now, &sensors);
             let mut progress = None;

@@ -81,7 +81,6 @@ impl LeggedWorld {
         }
     }
 
-    /// The robot that holds the ball kicks it.
     fn kick(&mut self, robot: usize, kick: LeggedKick) {
         let (p, heading) = (&self.parameters.kick, self.walkers[robot].pose.heading);
         let side = Angle::degrees(p.side_angle_deg);

@@ -187,7 +187,6 @@ impl View {
         DetectionBall { confidence, area: Some(12), x: x * 1000.0, y: y * 1000.0, z: None, pixel_x, pixel_y }
     }
 
-    /// The apparent position of the ball on the ground.
     fn apparent(&self, ball: &Ball) -> Point<Field> {
         if ball.height <= 0.0 {
             return ball.position;

@@ -45,7 +45,6 @@ impl Reporter {
         Self { to: to.to_owned(), events, lines, dropped: 0 }
     }
 
-    /// Where it reports to.
     pub(super) fn to(&self) -> &str {
         &self.to
     }
@@ -58,7 +57,6 @@ impl Reporter {
         }
     }
 
-    /// The next line for the operator.
     pub(super) fn next_line(&mut self) -> Option<String> {
         if let Ok(line) = self.lines.try_recv() {
             return Some(line);
@@ -159,13 +157,11 @@ fn reply(connection: &mut Connection) -> Result<ControllerReply, String> {
     })
 }
 
-/// The controller's reason for refusing.
 fn refused(reply: &ControllerReply) -> Option<String> {
     let rejected = reply.status_code == Some(StatusCode::Rejected as i32);
     rejected.then(|| reply.reason.clone().unwrap_or_else(|| "no reason given".to_owned()))
 }
 
-/// Name of the kind of event, for the operator.
 fn name_of(event: &GameEvent) -> String {
     let kind = event.r#type.and_then(|kind| GameEventType::try_from(kind).ok());
     format!("{:?}", kind.unwrap_or(GameEventType::Unknown))

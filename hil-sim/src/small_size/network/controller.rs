@@ -78,7 +78,6 @@ impl ExternalController {
         lines
     }
 
-    /// The state of the game, as text.
     pub(super) fn state(&self) -> String {
         if self.silent { "no referee".to_owned() } else { self.game.phase().to_string() }
     }
@@ -165,7 +164,6 @@ const fn decider(assistant: bool) -> Decider {
     if assistant { Decider::AutoReferee } else { Decider::Person }
 }
 
-/// The event as a line for the operator.
 fn line_of(event: &crate::small_size::referee::RefereeEvent) -> String {
     let by = match (event.by, event.robot) {
         (Some(team), Some(robot)) => format!(" by {} {}", team.label(), robot.number()),

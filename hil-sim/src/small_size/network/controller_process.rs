@@ -14,7 +14,6 @@ use ssl::net::Connection;
 
 use super::failure::CiError;
 
-/// A running controller and its directory.
 #[derive(Debug)]
 pub(super) struct ControllerProcess {
     child: Child,

@@ -75,7 +75,6 @@ impl Referee {
         Ok(())
     }
 
-    /// Lines that describe it, for the operator.
     pub(super) fn lines(&self) -> Vec<String> {
         match &self.source {
             RefereeSource::Internal(_) => vec![format!("referee  internal, to {}", self.sender.to())],
@@ -91,7 +90,6 @@ impl Referee {
         }
     }
 
-    /// The state of the game, as text.
     pub(super) fn state(&self) -> String {
         match &self.source {
             RefereeSource::Internal(referee) => referee.phase().to_string(),
@@ -135,7 +133,6 @@ impl Referee {
     }
 }
 
-/// The referee of our own.
 fn internal(settings: &NetworkSettings, seed: u64) -> Result<Box<InternalReferee>, NoRules> {
     let referee = RefereeSettings {
         epoch_us: settings.unix_us,

@@ -19,7 +19,6 @@ const CLIENTS_MAX: usize = 8;
 /// Most requests of one client in one period of the simulator: Ctrl-C and the page must be served too.
 const REQUESTS_MAX: usize = 64;
 
-/// Both teams' ports.
 pub(super) struct SyncPorts {
     teams: [TeamPort; 2],
 }

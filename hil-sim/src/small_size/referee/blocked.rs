@@ -17,7 +17,6 @@ use super::field_staff::WorldOrder;
 use super::observation::RobotSeen;
 use super::ready::ReadyObstacle;
 use super::reason::Reason;
-use super::scene::COLOURS;
 
 /// A match that could not continue although enough time had passed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,7 +123,7 @@ impl InternalReferee {
             return;
         }
         self.field_staff.called = false;
-        for team in COLOURS {
+        for team in Colour::ALL {
             let mut left: Vec<RobotSeen> = robots
                 .iter()
                 .copied()

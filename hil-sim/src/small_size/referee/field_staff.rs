@@ -11,7 +11,7 @@ use rules::{Colour, Phase, limits};
 
 use super::event::{Restart, What};
 use super::observation::RobotSeen;
-use super::scene::{COLOURS, is_running};
+use super::scene::is_running;
 use super::{InternalReferee, micros};
 
 /// A manual act, to be carried out at once.
@@ -33,7 +33,7 @@ pub(super) struct FieldStaff {
     pub(super) orders: VecDeque<WorldOrder>,
     /// Time of the last manual placement in this stop.
     put_at: Option<Instant>,
-    /// Playing time for which each team has had too many robots, in the order of [`COLOURS`], µs.
+    /// Playing time for which each team has had too many robots, in the order of [`Colour::ALL`], µs.
     crowded: [u64; 2],
     /// True while the game is halted for a manual act.
     pub(super) called: bool,
@@ -73,7 +73,7 @@ impl InternalReferee {
 
     /// Takes off surplus robots of a team, and returns those whose cards have expired.
     pub(super) fn keep_numbers(&mut self, robots: &[RobotSeen], passed_us: u64) {
-        for (index, team) in COLOURS.into_iter().enumerate() {
+        for (index, team) in Colour::ALL.into_iter().enumerate() {
             let ours = || robots.iter().filter(|robot| robot.who.colour == team);
             let (on_field, allowed) = (self.on_field(robots, team), self.allowed_now(team));
             let just_changed =

@@ -73,7 +73,7 @@ impl InternalReferee {
         if self.stage == Stage::PostGame || age < STOP_MIN {
             return;
         }
-        for team in super::scene::COLOURS {
+        for team in Colour::ALL {
             let account = self.accounts.of_mut(team);
             if account.timeout_wanted.is_some() && account.timeouts > 0 {
                 account.timeouts -= 1;

@@ -1,13 +1,12 @@
 //! `follow`: the internal referee as the mirror of a match that a game controller runs: its state is the
 //! controller's, and it counts what reports and pages show. m; µs of the simulation.
 
-use rules::Phase;
 use rules::state::Stage;
+use rules::{Colour, Phase};
 
 use super::InternalReferee;
 use super::look::Sight;
 use super::remote::{CiMatch, RemoteMatch};
-use super::scene::COLOURS;
 use crate::small_size::{PhysicsEvent, World};
 
 impl InternalReferee {
@@ -56,7 +55,7 @@ impl InternalReferee {
         let Some(newest) = &remote.newest else { return };
         self.stage_left = newest.stage_time_left.unwrap_or(0);
         self.action_left = newest.current_action_time_remaining.unwrap_or(0);
-        for team in COLOURS {
+        for team in Colour::ALL {
             let info = team.pick(&newest.yellow, &newest.blue);
             let keeper = remote.accounts.of(team).keeper;
             let account = self.accounts.of_mut(team);

@@ -68,7 +68,7 @@ impl InternalReferee {
     ) -> Vec<ReadyObstacle> {
         let (ball, speed) = (self.ball.position, self.ball.speed());
         let mut found = Vec::new();
-        for team in super::scene::COLOURS {
+        for team in Colour::ALL {
             let (on_field, allowed) = (self.on_field(robots, team), self.allowed_now(team));
             if on_field > allowed {
                 let reason = Reason::TooManyRobots { allowed, on_field };

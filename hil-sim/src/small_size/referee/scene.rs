@@ -10,9 +10,6 @@ use super::account::Accounts;
 use super::event::{RefereeEvent, What};
 use super::observation::{BallSeen, CrashSeen, RobotSeen};
 
-/// Both colours, in the order of the wire.
-pub(super) const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];
-
 pub(super) struct Scene<'a> {
     pub(super) now: Instant,
     pub(super) ball: BallSeen,
@@ -77,12 +74,10 @@ impl Scene<'_> {
         robot.pose.position.distance(self.ball.position) - limits::ROBOT_RADIUS
     }
 
-    /// An event of a robot at a place.
     pub(super) fn by(&self, who: Who, place: Point<Field>, what: What) -> RefereeEvent {
         RefereeEvent { at: self.now, by: Some(who.colour), robot: Some(who.id), place, what }
     }
 
-    /// An event of a team, or of neither.
     pub(super) fn of(&self, team: Option<Colour>, place: Point<Field>, what: What) -> RefereeEvent {
         RefereeEvent { at: self.now, by: team, robot: None, place, what }
     }

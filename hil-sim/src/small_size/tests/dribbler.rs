@@ -100,7 +100,7 @@ fn a_chip_of_45_degrees_lands_at_the_ballistic_range() {
     let mut landed = None;
     for _ in 0..2_000 {
         for event in run(&mut world, 1) {
-            if let (PhysicsEvent::Landed { at }, None) = (event, landed) {
+            if let (PhysicsEvent::Landed(at), None) = (event, landed) {
                 landed = Some(at);
             }
         }

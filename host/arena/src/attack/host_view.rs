@@ -5,11 +5,11 @@ use geometry::{Field, Point};
 use host::Host;
 use host::world::{Kick, World};
 use protocol::Who;
-use rules::FieldSpec;
 use rules::contact::TOUCHES_WITHIN;
 use rules::limits::ROBOT_HEIGHT;
+use rules::{Colour, FieldSpec};
 
-use super::{BallContact, BallLook, COLOURS};
+use super::{BallContact, BallLook};
 
 /// Looks at a match through a host. Times are on the host's clock, s.
 #[derive(Clone, Debug, Default)]
@@ -50,7 +50,7 @@ impl HostView {
         self.find_touches(world, now);
         let (ball, height) = self.ball?;
         let settings = host.settings();
-        let own_ends = COLOURS.map(|team| {
+        let own_ends = Colour::ALL.map(|team| {
             let assumed =
                 if team == settings.us { settings.defending } else { settings.defending.opposite() };
             game.own_goal(team).unwrap_or(assumed)
@@ -62,7 +62,7 @@ impl HostView {
             height,
             robots: &self.robots,
             phase: game.phase,
-            score: COLOURS.map(|team| game.team(team).score),
+            score: Colour::ALL.map(|team| game.team(team).score),
             own_ends,
             contacts: &self.contacts,
         })

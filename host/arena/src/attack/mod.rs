@@ -112,7 +112,8 @@ impl AttackWatch {
     pub fn look(&mut self, look: &BallLook<'_>) {
         self.events.clear();
         let now = look.now;
-        let scored = COLOURS.into_iter().find(|team| look.score[*team as usize] > self.goals[*team as usize]);
+        let scored =
+            Colour::ALL.into_iter().find(|team| look.score[*team as usize] > self.goals[*team as usize]);
         self.goals = look.score;
         let plays = matches!(look.phase, Phase::Run | Phase::FreeKick(_) | Phase::Kickoff(_));
         if plays && !self.runs {
@@ -208,7 +209,7 @@ impl AttackWatch {
         {
             possession.pressed = now;
         }
-        let alone = COLOURS.into_iter().find(|team| at[*team as usize] && !at[team.other() as usize]);
+        let alone = Colour::ALL.into_iter().find(|team| at[*team as usize] && !at[team.other() as usize]);
         let Some(team) = alone.filter(|team| self.possession.is_none_or(|own| own.team != *team)) else {
             self.claims = None;
             return;
@@ -302,7 +303,6 @@ fn open_share(look: &BallLook<'_>, team: Colour, at: Point<Field>) -> f32 {
     free.count() as f32 / GOAL_LINES as f32
 }
 
-const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];
 /// An opponent this near the ball presses its owner, m.
 const PRESSES_WITHIN: f32 = 0.35;
 /// A ball lost within this time of being pressed was lost in a tackle or scrum, s.

@@ -19,7 +19,6 @@ fn case_trial(trials: u32) -> CaseTrial<'static> {
     }
 }
 
-/// Authored case number of that name.
 fn number(case_trial: &CaseTrial<'_>, name: &str) -> usize {
     (0..case_trial.base.len() / 4)
         .find(|&n| case_trial.names.of(case_trial.case(n).unwrap().id()) == name)

@@ -58,7 +58,6 @@ struct Row<'a> {
     evidence: Evidence,
 }
 
-/// Evidence of the verdict.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 enum Evidence {

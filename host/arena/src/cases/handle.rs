@@ -82,14 +82,14 @@ impl LibraryHandle {
     /// The league whose simulator has the library's field.
     pub fn simulated_league(&self) -> Result<rules::League, LibraryError> {
         let league = league_of(self.base().field(), self.league());
-        league.ok_or_else(|| LibraryError::NoSimulator { league: self.league().to_owned() })
+        league.ok_or_else(|| LibraryError::NoSimulator(self.league().to_owned()))
     }
 
     /// Refuses cases of a field on which no trial is played: the trials' simulator has one.
     pub fn check_field_of_trials(&self) -> Result<(), LibraryError> {
         match self.simulated_league() {
             Ok(rules::League::FourLegged) => Ok(()),
-            _ => Err(LibraryError::NoSimulator { league: self.league().to_owned() }),
+            _ => Err(LibraryError::NoSimulator(self.league().to_owned())),
         }
     }
 
@@ -204,15 +204,12 @@ pub enum LibraryError {
     /// No built-in league has that name.
     #[error("no built-in league {:?}; take one of: {}", .0, leagues())]
     UnknownLeague(String),
-    /// Cases of a field that no simulator plays on.
+    /// Cases of a league on whose field no simulator plays.
     #[error(
-        "the cases of {league} cannot be played: the simulator plays on the four-legged league's field of 5400 x 3600 mm, \
+        "the cases of {0} cannot be played: the simulator plays on the four-legged league's field of 5400 x 3600 mm, \
          and theirs is another; take league four-legged or a library for that field"
     )]
-    NoSimulator {
-        /// The league of the library.
-        league: String,
-    },
+    NoSimulator(String),
 }
 
 fn errors(findings: &[Finding]) -> String {
@@ -220,7 +217,6 @@ fn errors(findings: &[Finding]) -> String {
     errors.fold(String::new(), |text, finding| text + "  " + &finding.to_string() + "\n")
 }
 
-/// Names of the built-in leagues.
 fn leagues() -> String {
     LEAGUES.iter().map(|league| league.name).collect::<Vec<_>>().join(", ")
 }

@@ -91,24 +91,14 @@ pub struct Game<'a> {
 #[derive(Debug, thiserror::Error)]
 pub enum GameError {
     /// A robot's computer failed.
-    #[error("{} {}: {error}", .who.colour.label(), .who.id)]
-    Computer {
-        /// The robot with that computer.
-        who: Who,
-        /// Error of the computer's back end.
-        error: McuError,
-    },
+    #[error("{colour} {id}: {1}", colour = .0.colour.label(), id = .0.id)]
+    Computer(Who, McuError),
     /// The league has no such matches.
     #[error("{0}")]
     League(String),
-    /// A team's own strategy cannot be started.
-    #[error("the strategy `{name}` does not start: {error}")]
-    Strategy {
-        /// Command of the program.
-        name: String,
-        /// The operating system's error.
-        error: std::io::Error,
-    },
+    /// A team's own strategy cannot be started by this command.
+    #[error("the strategy `{0}` does not start: {1}")]
+    Strategy(String, std::io::Error),
     /// The league's game controller.
     #[error(transparent)]
     Controller(#[from] CiError),

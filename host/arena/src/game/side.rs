@@ -59,7 +59,7 @@ impl<'a> Team<'a> {
             let who = Who { colour, id: *id };
             world.put(who, Pose { position, heading });
             let brain = brain::BrainConfig { defending: own, ..setup.brain(config.league, *id) };
-            let computer = backend.boot(&brain).map_err(|error| GameError::Computer { who, error })?;
+            let computer = backend.boot(&brain).map_err(|error| GameError::Computer(who, error))?;
             let epoch = brain.epoch;
             let (computer, led) = (Some(computer), false);
             players.push(Player { who, computer, booted: 0, epoch, worst_instructions: 0, led });
@@ -161,7 +161,7 @@ impl<'a> Team<'a> {
         let defending = self.host.game().own_goal(who.colour).unwrap_or(own_goal(config, who.colour));
         let brain =
             brain::BrainConfig { defending, epoch: player.epoch, ..setup.brain(config.league, who.id) };
-        let computer = backend.boot(&brain).map_err(|error| GameError::Computer { who, error })?;
+        let computer = backend.boot(&brain).map_err(|error| GameError::Computer(who, error))?;
         (player.computer, player.booted) = (Some(computer), tick);
         Ok(true)
     }
@@ -194,14 +194,14 @@ impl<'a> Team<'a> {
             let own = Instant(now.0 - u64::from(player.booted) * TICK_US);
             let air = packets.iter().map(|packet| &packet[..]).collect();
             let input = TickIn { seq: tick, now: own, air, sensors };
-            computer.post(&input).map_err(|error| GameError::Computer { who, error })?;
+            computer.post(&input).map_err(|error| GameError::Computer(who, error))?;
             thinking.push(i);
         }
         for i in thinking {
             let player = &mut players[i];
             let who = player.who;
             let Some(computer) = &mut player.computer else { continue };
-            let reply = computer.collect().map_err(|error| GameError::Computer { who, error })?;
+            let reply = computer.collect().map_err(|error| GameError::Computer(who, error))?;
             player.worst_instructions = player.worst_instructions.max(reply.instructions);
             if let Some(order) = reply.actuators {
                 trace.small_size_order(who, &order);
@@ -218,7 +218,7 @@ impl<'a> Team<'a> {
 }
 
 fn started(starter: &StrategyStarter) -> Result<Box<dyn StrategyLink>, GameError> {
-    starter.start().map_err(|error| GameError::Strategy { name: starter.name().to_owned(), error })
+    starter.start().map_err(|error| GameError::Strategy(starter.name().to_owned(), error))
 }
 
 /// The settings that a team's host starts with; robots receive each other, so it relays nothing.

@@ -44,7 +44,6 @@ fn entry(page: &mut Page, recording: &Recording, start: &Start, n: usize, at: Px
     page.text(at.moved(220.0, 4.5), &details, Anchor::Start, font(12.0, FAINT));
 }
 
-/// One line of signs.
 fn signs(page: &mut Page, y: f32) {
     let mut x = SIDE + 8.0;
     let print = |page: &mut Page, x: &mut f32, after: f32, description: &str| {

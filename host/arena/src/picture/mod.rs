@@ -91,7 +91,6 @@ fn header(page: &mut Page, report: &TrialReport) {
     }
 }
 
-/// Draws the path of a robot.
 fn track(page: &mut Page, recording: &Recording, robot: usize) {
     let places =
         recording.samples.iter().filter_map(|sample| sample.robots.get(robot)).map(|pose| pose.position);
@@ -143,7 +142,6 @@ fn ball_path(page: &mut Page, recording: &Recording) {
     }
 }
 
-/// Robot that controls the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Control {
     Carried(usize),
@@ -166,7 +164,6 @@ fn arrow_on(page: &mut Page, points: &[Px], color: &str) {
     }
 }
 
-/// A robot on the figure.
 struct Actor<'a> {
     robot: usize,
     attackers: usize,

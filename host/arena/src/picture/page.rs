@@ -101,12 +101,10 @@ impl Page {
     }
 }
 
-/// Letters of this size and colour.
 pub(super) const fn font(size: f64, fill: &str) -> Font<'_> {
     Font { size, fill, bold: false, halo: None }
 }
 
-/// The same, bold.
 pub(super) const fn bold(size: f64, fill: &str) -> Font<'_> {
     Font { size, fill, bold: true, halo: None }
 }

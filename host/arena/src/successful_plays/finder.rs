@@ -216,7 +216,6 @@ fn leads_to(chain: &[Pass], kick: &Kick) -> bool {
     })
 }
 
-/// The robot of a contact, and where the ball was.
 fn robot_and_place(contact: &BallContact) -> (Who, Point<Field>) {
     match *contact {
         BallContact::Kicked { by, from, .. } => (by, from),

@@ -41,7 +41,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
 
 /// The files of shards in a directory, in the order of their names.
 pub(super) fn shards<R: Row>(directory: &Path) -> Result<Vec<Kept<R>>, EvaluationError> {
-    let failed = |error| EvaluationError::File { file: directory.to_owned(), error };
+    let failed = |error| EvaluationError::File(directory.to_owned(), error);
     let mut files = Vec::new();
     for entry in std::fs::read_dir(directory).map_err(failed)? {
         let path = entry.map_err(failed)?.path();

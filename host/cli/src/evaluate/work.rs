@@ -54,7 +54,7 @@ impl WorkArgs {
         check_results(&self.out)?;
         destination::make_directory(&self.out)?;
         if self.fresh {
-            let failed = |error| EvaluationError::File { file: self.out.clone(), error };
+            let failed = |error| EvaluationError::File(self.out.clone(), error);
             for entry in std::fs::read_dir(&self.out).map_err(failed)? {
                 let entry = entry.map_err(failed)?;
                 let of_shard = entry.file_name().to_str().and_then(Shard::from_file_name);
@@ -99,7 +99,7 @@ const RESULTS: [(&str, FileKind); 14] = [
 
 fn forget(file: &Path) -> Result<(), Failure> {
     let gone = std::fs::remove_file(file);
-    gone.map_err(|error| EvaluationError::File { file: file.to_owned(), error }.into())
+    gone.map_err(|error| EvaluationError::File(file.to_owned(), error).into())
 }
 
 /// All settings that the trials of a plan depend on.

@@ -16,9 +16,7 @@ use super::name;
 pub(super) struct Stoppage {
     /// The event that stopped the game; `start` at the start of a half.
     pub(super) cause: &'static str,
-    /// Start of it.
     pub(super) from_s: f64,
-    /// Duration of each part.
     pub(super) parts: BTreeMap<&'static str, f64>,
 }
 

@@ -23,7 +23,7 @@ pub use result::{DrillResult, Proportion, drill_results, drill_table};
 pub use situations::{Situation, SituationError};
 
 use crate::matches::MatchTeam;
-use crate::store::Experiment;
+use crate::store::{Experiment, job_seed};
 
 geometry::labels! {
     /// What the opponents do.
@@ -164,12 +164,7 @@ impl Experiment for DrillPlan {
 impl DrillPlan {
     /// The seed of a try: the same for every team and world.
     fn seed_of(&self, drill: DrillKind, number: u32) -> u64 {
-        let mut hash = hil_sim::Fnv::default();
-        hash.add(drill.label().as_bytes());
-        hash.add(&self.seed.to_le_bytes());
-        hash.add(&number.to_le_bytes());
-        // 32 bits are exact for every reader of JSON.
-        hash.value() & 0xffff_ffff
+        job_seed(self.seed, drill.label(), number)
     }
 }
 

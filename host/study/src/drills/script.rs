@@ -16,7 +16,6 @@ pub(super) const THEM: Colour = Colour::Yellow;
 /// Our colour.
 pub(super) const US: Colour = Colour::Blue;
 
-/// The opponents of one try.
 #[derive(Clone, Debug)]
 pub(super) struct Script {
     drill: DrillKind,
@@ -375,7 +374,6 @@ fn order(robot: &Robot, wanted: Wanted) -> Order {
     }
 }
 
-/// One of theirs, by number.
 pub(super) fn them(number: usize) -> Who {
     Who { colour: THEM, id: id(number) }
 }

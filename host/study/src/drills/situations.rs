@@ -44,21 +44,11 @@ pub struct SituationFrame {
 #[derive(Debug, thiserror::Error)]
 pub enum SituationError {
     /// A table cannot be read.
-    #[error("{}: {error}", .file.display())]
-    Read {
-        /// The table.
-        file: PathBuf,
-        /// The operating system's error.
-        error: io::Error,
-    },
-    /// A row is not of the format.
-    #[error("{}: {error}", .file.display())]
-    Row {
-        /// The table.
-        file: PathBuf,
-        /// The row's error, with its line.
-        error: csv::Error,
-    },
+    #[error("{file}: {1}", file = .0.display())]
+    Read(PathBuf, io::Error),
+    /// A row is not of the format; the error has its line.
+    #[error("{file}: {1}", file = .0.display())]
+    Row(PathBuf, csv::Error),
     /// A value of a row is not valid.
     #[error("{} line {line}: {reason}", .file.display())]
     Value {
@@ -83,7 +73,6 @@ struct IndexRow {
     note: String,
 }
 
-/// A row of the positions.
 #[derive(Deserialize)]
 struct PositionRow {
     situation: String,
@@ -107,8 +96,7 @@ pub fn built_in() -> Result<Vec<Situation>, SituationError> {
 /// The situations of a file, plain or gzip, with its `index.csv` beside it.
 pub fn read(file: &Path) -> Result<Vec<Situation>, SituationError> {
     let index_file = file.with_file_name("index.csv");
-    let open =
-        |file: &Path| File::open(file).map_err(|error| SituationError::Read { file: file.to_owned(), error });
+    let open = |file: &Path| File::open(file).map_err(|error| SituationError::Read(file.to_owned(), error));
     let index = BufReader::new(open(&index_file)?);
     let mut bytes = Vec::new();
     let mut positions = BufReader::new(open(file)?);
@@ -119,7 +107,7 @@ pub fn read(file: &Path) -> Result<Vec<Situation>, SituationError> {
         let mut text = Vec::new();
         MultiGzDecoder::new(bytes.as_slice()).read_to_end(&mut text).map(|_| text)
     });
-    let text = read.map_err(|error| SituationError::Read { file: file.to_owned(), error })?;
+    let text = read.map_err(|error| SituationError::Read(file.to_owned(), error))?;
     parse(&index_file, index, file, text.as_slice())
 }
 
@@ -174,7 +162,7 @@ fn for_rows<R: for<'d> Deserialize<'d>>(
     mut take: impl FnMut(R, &dyn Fn(String) -> SituationError) -> Result<(), SituationError>,
 ) -> Result<(), SituationError> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(table);
-    let error_of = |error| SituationError::Row { file: file.to_owned(), error };
+    let error_of = |error| SituationError::Row(file.to_owned(), error);
     let heads = reader.headers().map_err(error_of)?.clone();
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(error_of)? {
@@ -188,7 +176,6 @@ fn for_rows<R: for<'d> Deserialize<'d>>(
 /// A frame whose rows are being read.
 #[derive(Default)]
 struct OpenFrame {
-    /// Place of its situation.
     place: Option<usize>,
     time_s: f32,
     ball: Option<Point<Field>>,

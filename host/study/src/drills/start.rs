@@ -28,13 +28,11 @@ pub(super) enum Opening {
     TheirFreeKick,
 }
 
-/// Start of a try.
 #[derive(Clone, Debug)]
 pub(super) struct DrillStart {
     pub(super) league: League,
     /// Ours, by number; the keeper is 0.
     pub(super) ours: Vec<Pose<Field>>,
-    /// Theirs, by number.
     pub(super) theirs: Vec<Pose<Field>>,
     pub(super) ball: Ball,
     pub(super) opening: Opening,

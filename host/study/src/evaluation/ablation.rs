@@ -14,7 +14,9 @@ use serde::Serialize;
 
 use super::row::TrialRow;
 use super::tables::rounded;
-use crate::statistics::{Count, PairedMeans, PairedShares, Test, holm, stars, two_proportions, welch};
+use crate::statistics::{
+    Count, PairedMeans, PairedShares, Test, holm_by_family, stars, two_proportions, welch,
+};
 use arena::Setup;
 
 /// One change to the team.
@@ -254,17 +256,9 @@ fn percent(count: Count) -> f64 {
 fn correct(effects: &mut [Effect]) {
     let family =
         |effect: &Effect| (effect.measure, effect.configuration.map(Configuration::label), effect.scenario);
-    for place in 0..effects.len() {
-        let own = family(&effects[place]);
-        if effects[..place].iter().any(|effect| family(effect) == own) {
-            continue;
-        }
-        let of_family = effects.iter().enumerate().filter(|(_, effect)| family(effect) == own);
-        let members: Vec<_> = of_family.filter_map(|(i, effect)| Some((i, effect.p_paired?))).collect();
-        let corrected = holm(&members.iter().map(|(_, p)| *p).collect::<Vec<_>>());
-        for ((member, _), p) in members.into_iter().zip(corrected) {
-            effects[member].p_holm = Some(p);
-        }
+    let tests: Vec<_> = effects.iter().map(|effect| (family(effect), effect.p_paired)).collect();
+    for (effect, p) in effects.iter_mut().zip(holm_by_family(&tests)) {
+        effect.p_holm = p;
     }
 }
 

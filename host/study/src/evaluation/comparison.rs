@@ -10,7 +10,7 @@ use hil_sim::Scenario;
 use serde::Serialize;
 
 use super::tables::{Extent, TableRow, rounded};
-use crate::statistics::{Count, Sample, Test, holm, two_proportions, welch};
+use crate::statistics::{Count, Sample, Test, holm_by_family, two_proportions, welch};
 use arena::approach_label;
 
 geometry::labels! {
@@ -208,22 +208,14 @@ fn of_pairs(pairs: &[(&TableRow, &TableRow)]) -> Vec<Comparison> {
 
 /// Fills in [`Comparison::p_holm`], family by family.
 fn correct(comparisons: &mut [Comparison]) {
-    let family = |c: &Comparison| {
+    let tests = comparisons.iter().map(|c| {
         let drawn = c.scenario == Scenario::Random;
-        (c.table, c.sample, c.measure, c.first_approach, c.second_approach, drawn)
-    };
-    for place in 0..comparisons.len() {
-        if comparisons[place].p_holm.is_some() {
-            continue;
-        }
-        let own = family(&comparisons[place]);
-        let tested =
-            |(i, c): (usize, &Comparison)| c.test.filter(|_| family(c) == own).map(|test| (i, test.p));
-        let members: Vec<(usize, f64)> = comparisons.iter().enumerate().filter_map(tested).collect();
-        let p: Vec<f64> = members.iter().map(|(_, p)| *p).collect();
-        for ((member, _), corrected) in members.iter().zip(holm(&p)) {
-            comparisons[*member].p_holm = Some(corrected);
-        }
+        let family = (c.table, c.sample, c.measure, c.first_approach, c.second_approach, drawn);
+        (family, c.test.map(|test| test.p))
+    });
+    let corrected = holm_by_family(&tests.collect::<Vec<_>>());
+    for (comparison, p) in comparisons.iter_mut().zip(corrected) {
+        comparison.p_holm = p;
     }
 }
 

@@ -45,58 +45,55 @@ pub struct Identity {
 impl Identity {
     /// The settings in which the other differs; empty between equals.
     pub fn differences(&self, other: &Self) -> Vec<Difference> {
-        between(self, other)
+        let own = self;
+        let shown = |value: &str| value.to_owned();
+        let library =
+            |identity: &Identity| (identity.case_base.clone(), identity.symmetry, identity.case_opponents);
+        let world = |identity: &Identity| (identity.world.clone(), hash_of(&identity.parameters));
+        let settings = |identity: &Identity| {
+            let differing =
+                |(name, _): &(&String, &String)| own.settings.get(*name) != other.settings.get(*name);
+            let pairs = identity.settings.iter().filter(differing);
+            pairs.map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(" ")
+        };
+        let cells = |plan: &EvaluationPlan| plan.clone().with_trials(0).cells;
+        let mut trials = None;
+        if cells(&own.plan) == cells(&other.plan) {
+            trials = Difference::of("number of trials", (&own.plan.cells, &other.plan.cells), |cells| {
+                let mut counts: Vec<_> = cells.iter().map(|cell| cell.trials.to_string()).collect();
+                counts.dedup();
+                counts.join(" ")
+            });
+        }
+        let differences = [
+            Difference::of("program", (own.program.as_str(), other.program.as_str()), shown),
+            Difference::of("cases", (&library(own), &library(other)), |(hash, symmetry, opponents)| {
+                let reduced = [(*symmetry, ", not mirrored"), (*opponents, ", without opponents")];
+                let reduced = reduced.into_iter().filter_map(|(kept, text)| (!kept).then_some(text));
+                hash.clone() + &reduced.collect::<String>()
+            }),
+            Difference::of("settings", (settings(own).as_str(), settings(other).as_str()), shown),
+            Difference::of("positioning", (own.positioning.as_str(), other.positioning.as_str()), shown),
+            Difference::of("retrievers", (&own.retrievers, &other.retrievers), usize::to_string),
+            Difference::of("loss", (&own.loss, &other.loss), f32::to_string),
+            Difference::of(
+                "pause of the opponents",
+                (&own.opponents_pause, &other.opponents_pause),
+                bool::to_string,
+            ),
+            Difference::of("world", (&world(own), &world(other)), |(world, parameters)| {
+                format!("{world} (parameters {parameters})")
+            }),
+            Difference::of("seed", (&own.plan.seed, &other.plan.seed), u64::to_string),
+            Difference::of(
+                "scenarios, opponents or approaches",
+                (&cells(&own.plan), &cells(&other.plan)),
+                |cells| format!("{} cells (hash {})", cells.len(), hash_of(cells)),
+            ),
+            trials,
+        ];
+        differences.into_iter().flatten().collect()
     }
-}
-
-/// The settings in which two evaluations of trials differ.
-pub(super) fn between(own: &Identity, other: &Identity) -> Vec<Difference> {
-    let shown = |value: &str| value.to_owned();
-    let library =
-        |identity: &Identity| (identity.case_base.clone(), identity.symmetry, identity.case_opponents);
-    let world = |identity: &Identity| (identity.world.clone(), hash_of(&identity.parameters));
-    let settings = |identity: &Identity| {
-        let differing = |(name, _): &(&String, &String)| own.settings.get(*name) != other.settings.get(*name);
-        let pairs = identity.settings.iter().filter(differing);
-        pairs.map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(" ")
-    };
-    let cells = |plan: &EvaluationPlan| plan.clone().with_trials(0).cells;
-    let mut trials = None;
-    if cells(&own.plan) == cells(&other.plan) {
-        trials = Difference::of("number of trials", (&own.plan.cells, &other.plan.cells), |cells| {
-            let mut counts: Vec<_> = cells.iter().map(|cell| cell.trials.to_string()).collect();
-            counts.dedup();
-            counts.join(" ")
-        });
-    }
-    let differences = [
-        Difference::of("program", (own.program.as_str(), other.program.as_str()), shown),
-        Difference::of("cases", (&library(own), &library(other)), |(hash, symmetry, opponents)| {
-            let reduced = [(*symmetry, ", not mirrored"), (*opponents, ", without opponents")];
-            let reduced = reduced.into_iter().filter_map(|(kept, text)| (!kept).then_some(text));
-            hash.clone() + &reduced.collect::<String>()
-        }),
-        Difference::of("settings", (settings(own).as_str(), settings(other).as_str()), shown),
-        Difference::of("positioning", (own.positioning.as_str(), other.positioning.as_str()), shown),
-        Difference::of("retrievers", (&own.retrievers, &other.retrievers), usize::to_string),
-        Difference::of("loss", (&own.loss, &other.loss), f32::to_string),
-        Difference::of(
-            "pause of the opponents",
-            (&own.opponents_pause, &other.opponents_pause),
-            bool::to_string,
-        ),
-        Difference::of("world", (&world(own), &world(other)), |(world, parameters)| {
-            format!("{world} (parameters {parameters})")
-        }),
-        Difference::of("seed", (&own.plan.seed, &other.plan.seed), u64::to_string),
-        Difference::of(
-            "scenarios, opponents or approaches",
-            (&cells(&own.plan), &cells(&other.plan)),
-            |cells| format!("{} cells (hash {})", cells.len(), hash_of(cells)),
-        ),
-        trials,
-    ];
-    differences.into_iter().flatten().collect()
 }
 
 /// A hash to tell values apart, 8 hexadecimal digits.
@@ -144,27 +141,27 @@ pub(super) mod tests {
     #[test]
     fn every_setting_that_differs_is_named_with_both_values() {
         let own = identity();
-        assert_eq!(between(&own, &own), []);
+        assert_eq!(own.differences(&own), []);
         let other = Identity { retrievers: 1, plan: own.plan.clone().with_trials(2), ..identity() };
-        assert_eq!(in_words(&between(&own, &other)), "retrievers 2, not 1; number of trials 1, not 2");
+        assert_eq!(in_words(&own.differences(&other)), "retrievers 2, not 1; number of trials 1, not 2");
         let other = Identity { case_base: "1".to_owned(), plan: EvaluationPlan::judge(3), ..identity() };
-        let names: Vec<_> = between(&own, &other).iter().map(|difference| difference.what).collect();
+        let names: Vec<_> = own.differences(&other).iter().map(|difference| difference.what).collect();
         assert_eq!(names, ["cases", "seed", "scenarios, opponents or approaches"]);
         let other = Identity { symmetry: false, program: "0.3.0".to_owned(), ..identity() };
         assert_eq!(
-            in_words(&between(&own, &other)),
+            in_words(&own.differences(&other)),
             "program test, not 0.3.0; cases 00000000, not 00000000, not mirrored"
         );
         let settings = [("thr_c", "1400"), ("cost", "max")].map(|(name, value)| (name.into(), value.into()));
         let other = Identity { settings: settings.into(), ..identity() };
-        assert_eq!(in_words(&between(&own, &other)), "settings thr_c=1500, not cost=max thr_c=1400");
+        assert_eq!(in_words(&own.differences(&other)), "settings thr_c=1500, not cost=max thr_c=1400");
     }
 
     #[test]
     fn another_world_has_another_hash() {
         let (own, mut heavier) = (identity(), identity());
         heavier.parameters.ball.deceleration += 0.01;
-        let differences = between(&own, &heavier);
+        let differences = own.differences(&heavier);
         assert_eq!(differences.len(), 1);
         assert!(differences[0].own.starts_with(&format!("{} (parameters ", own.world)), "{differences:?}");
         assert_ne!(differences[0].own, differences[0].other);

@@ -89,7 +89,7 @@ impl Results {
         let flat: Vec<_> = all.iter().enumerate().map(|(i, comparison)| comparison.flat(i < paper)).collect();
         let run = Run { identity: &self.identity, trials: self.rows.len(), csv_hash: &self.hash };
         contents([
-            ("trials.csv", to_csv(&self.rows).map_err(Into::into)),
+            ("trials.csv", as_csv(&self.rows)),
             ("tables.json", json(&self.tables)),
             ("tables.csv", as_csv(&self.tables)),
             ("comparisons.json", json(&flat)),
@@ -124,11 +124,6 @@ fn json(value: &impl Serialize) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A row of CSV for each element, with the columns' names in the first line.
 fn as_csv<T: Serialize>(rows: &[T]) -> io::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row)?;
-    }
-    writer.into_inner().map_err(csv::IntoInnerError::into_error)
+    to_csv(rows).map_err(Into::into)
 }

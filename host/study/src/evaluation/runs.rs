@@ -46,7 +46,7 @@ impl Experiment for Evaluation<'_> {
 
     fn play(&self, planned: &Planned) -> Result<TrialRow, EvaluationError> {
         let report = run(&self.config(planned), Box::new(NativeBackend::new(self.base)), &mut [])
-            .map_err(|error| EvaluationError::Trial { trial: planned.number, error })?;
+            .map_err(|error| EvaluationError::Trial(planned.number, error))?;
         Ok(TrialRow::new(planned, &report))
     }
 }

@@ -209,7 +209,6 @@ impl<U: Playable> Player<U> for JournalPlayer<'_, U::Played> {
     }
 }
 
-/// The number by which a unit belongs to a shard.
 fn unit_number(key: u64) -> usize {
     (key >> 1) as usize
 }
@@ -234,7 +233,7 @@ fn absorb<T: DeserializeOwned>(
             let head = String::from_utf8_lossy(line.strip_suffix(b"\n").unwrap_or(line));
             if head != identity {
                 let differences = differences(&head, identity);
-                return Err(PlayError::OtherRun { file: path.display().to_string(), differences });
+                return Err(PlayError::OtherRun(path.display().to_string(), differences));
             }
         } else {
             let line: Line<T> = serde_json::from_slice(line).map_err(|error| PlayError::Damaged {

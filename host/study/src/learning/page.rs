@@ -73,7 +73,7 @@ pub fn summary(learned: &Learned) -> String {
             text,
             "{:>2}  {:<9} {}  {:+.2} {}, e {:.3e}",
             change.round,
-            verdict(change.verdict),
+            change.verdict.label(),
             change.proposal.edit,
             change.wager.gain(),
             gained(learned),
@@ -209,7 +209,7 @@ fn proposals(learned: &Learned) -> Table {
     let columns = [Column::number("round", "")].into_iter().chain(heads.map(Column::text));
     let rows = learned.changes.iter().map(|change| -> Row {
         let proposal = &change.proposal;
-        let (evidence, verdict) = (evidence(learned, change), verdict(change.verdict));
+        let (evidence, verdict) = (evidence(learned, change), change.verdict.label());
         row![change.round, proposal.kind.label(), proposal.edit, proposal.reason, evidence, verdict]
     });
     Table::new(columns).with_rows(rows)
@@ -249,7 +249,6 @@ fn robots(point: &CurvePoint) -> String {
     point.to_goal_robots.map_or_else(String::new, |robots| format!("{robots:.2}"))
 }
 
-/// Unit of a gain.
 fn gained(learned: &Learned) -> &'static str {
     if learned.opponents.is_empty() { "points" } else { "goals in 100 scenes" }
 }
@@ -257,20 +256,6 @@ fn gained(learned: &Learned) -> &'static str {
 /// Unit of a validation's pairs, at the end of its sentence.
 fn validated(learned: &Learned) -> &'static str {
     if learned.opponents.is_empty() { " starts." } else { " matches." }
-}
-
-const fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Proposed => "proposed",
-        Verdict::Rare => "rarely played",
-        Verdict::ScreenedOut => "screened out",
-        Verdict::Unconfirmed => "not confirmed",
-        Verdict::Superseded => "superseded",
-        Verdict::Warned => "warned",
-        Verdict::Lowers => "lowers",
-        Verdict::Touches => "more touches",
-        Verdict::Accepted => "accepted",
-    }
 }
 
 /// Figure of a case of a library; `None` where it lacks the case.

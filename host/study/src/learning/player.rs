@@ -40,14 +40,9 @@ pub enum PlayError {
     /// Another process writes to the journal.
     #[error("{}: another process writes to it; wait for it, or stop it", printable(.0))]
     InUse(String),
-    /// The journal is of another run: other settings, library or world.
-    #[error("{} is of another run: {}; take another --out", printable(.file), printable(.differences))]
-    OtherRun {
-        /// The journal.
-        file: String,
-        /// Differences, with the journal's value first.
-        differences: String,
-    },
+    /// This journal is of another run; the differences have the journal's value first.
+    #[error("{} is of another run: {}; take another --out", printable(.0), printable(.1))]
+    OtherRun(String, String),
     /// A line of a journal is no unit.
     #[error(
         "{}: the line at byte {at} is no unit of trials: {}; remove the file, its units are played again",

@@ -15,29 +15,31 @@ use crate::learning::starts::{KINDS, StartKind, kind_of};
 use crate::learning::trial::LearningTrial;
 use crate::learning::variant::Variant;
 
-/// Verdict on a proposal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// Proposed in a run that changes nothing.
-    Proposed,
-    /// Play changes in hardly any situation.
-    Rare,
-    /// Others were better in the first situations.
-    ScreenedOut,
-    /// The sequential test did not reach its threshold.
-    Unconfirmed,
-    /// No longer applicable to the library after the changes before it.
-    Superseded,
-    /// `cases check` would warn.
-    Warned,
-    /// The result is lower in a kind of validation starts, or in all of a world together.
-    Lowers,
-    /// On validation starts of a world the opponents touch the ball more often with it, and its gain there
-    /// may be chance.
-    Touches,
-    /// Taken over into the learned library.
-    Accepted,
+geometry::labels! {
+    /// Verdict on a proposal; the label is that of the report.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Verdict {
+        /// Proposed in a run that changes nothing.
+        Proposed = "proposed",
+        /// Play changes in hardly any situation.
+        Rare = "rarely played",
+        /// Others were better in the first situations.
+        ScreenedOut = "screened out",
+        /// The sequential test did not reach its threshold.
+        Unconfirmed = "not confirmed",
+        /// No longer applicable to the library after the changes before it.
+        Superseded = "superseded",
+        /// `cases check` would warn.
+        Warned = "warned",
+        /// The result is lower in a kind of validation starts, or in all of a world together.
+        Lowers = "lowers",
+        /// On validation starts of a world the opponents touch the ball more often with it, and its gain
+        /// there may be chance.
+        Touches = "more touches",
+        /// Taken over into the learned library.
+        Accepted = "accepted",
+    }
 }
 
 /// Pairs on validation starts, or of whole matches.

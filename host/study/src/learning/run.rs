@@ -47,7 +47,6 @@ pub(super) struct Screening {
     pub(super) finalist_z: f64,
 }
 
-/// Numbers of the sequential test.
 pub(super) struct Testing {
     /// Looks that decide whether a test goes on, at most.
     pub(super) looks: usize,

@@ -126,7 +126,6 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// The trial that ended with this report.
     pub(crate) fn trial(self, report: &TrialReport) -> LearningTrial {
         LearningTrial {
             outcome: report.outcome,

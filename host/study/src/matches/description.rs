@@ -52,7 +52,6 @@ pub fn summary(outcomes: &[Outcome]) -> String {
 /// Matches of a pair by which two programs are judged: with fewer, half a goal a match is chance.
 const MATCHES_TO_JUDGE: u32 = 20;
 
-/// A table below other text.
 fn below(table: &Table) -> String {
     format!("\n{}", table.markdown())
 }
@@ -270,7 +269,6 @@ fn percent(part: u32, whole: u32) -> String {
     }
 }
 
-/// Each side of each pair, with its passes.
 fn sides(outcomes: &[Outcome]) -> impl Iterator<Item = (MatchTeam, MatchTeam, &Passes)> {
     outcomes.iter().flat_map(|o| [(o.own, o.opponent, &o.restarts[0]), (o.opponent, o.own, &o.restarts[1])])
 }
@@ -360,7 +358,6 @@ fn share(share: Share) -> String {
     share.share.map_or_else(|| "–".to_owned(), |mean| within(mean, share.low, share.high))
 }
 
-/// A difference with its interval, and its p.
 fn change_and_p(change: Option<Change>) -> [String; 2] {
     let text = change.map_or_else(|| "–".to_owned(), |c| within(c.mean, c.low, c.high));
     [text, p_text(change.and_then(|change| change.p))]

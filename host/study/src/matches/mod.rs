@@ -144,14 +144,13 @@ impl Experiment for Matches {
 
     fn play(&self, planned: &Planned) -> Result<MatchRow, EvaluationError> {
         let report = play(&self.config(planned)?, &mut NativeBackend::new(self.base), &mut NoWatcher)
-            .map_err(|error| EvaluationError::Match { number: planned.number, error })?;
+            .map_err(|error| EvaluationError::Match(planned.number, error))?;
         let number = planned.number;
         for (is_blue, metrics) in [(true, &report.metrics.blue), (false, &report.metrics.yellow)] {
             let Some(answers) = &metrics.strategy else { continue };
             let Some(warning) = answers.warning() else { continue };
             if answers.never_played() {
-                let error = GameError::StrategyFailed(warning);
-                return Err(EvaluationError::Match { number, error });
+                return Err(EvaluationError::Match(number, GameError::StrategyFailed(warning)));
             }
             if let Some(file) = &self.refusals {
                 file.append(&Refusal { number, is_blue, answers: answers.clone() })?;

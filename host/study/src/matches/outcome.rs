@@ -133,7 +133,6 @@ fn outcome(own: MatchTeam, opponent: MatchTeam, rows: &[&MatchRow]) -> Outcome {
     }
 }
 
-/// Mean of a count a match, of both teams.
 fn means(rows: &[&MatchRow], count: fn(&MatchSide) -> u32) -> [Option<Estimate>; 2] {
     [0, 1].map(|side| Estimate::of(rows.iter().map(|row| f64::from(count(&row.sides[side]))), f64::INFINITY))
 }

@@ -28,7 +28,7 @@ pub use start::SceneStart;
 pub use table::scene_table;
 
 use crate::matches::MatchTeam;
-use crate::store::Experiment;
+use crate::store::{Experiment, job_seed};
 use arena::game::{GameConfig, GameError};
 
 /// Time in which a scene is watched, from the moment at which the ball is in play, s: the measure of
@@ -129,12 +129,7 @@ impl ScenePlan {
 
     /// The seed of a scene is the same for all teams and opponents.
     fn seed_of(&self, kind: SceneKind, number: u32) -> u64 {
-        let mut hash = hil_sim::Fnv::default();
-        hash.add(kind.label().as_bytes());
-        hash.add(&self.seed.to_le_bytes());
-        hash.add(&number.to_le_bytes());
-        // 32 bits are exact for every reader of JSON.
-        hash.value() & 0xffff_ffff
+        job_seed(self.seed, kind.label(), number)
     }
 }
 

@@ -24,7 +24,6 @@ pub struct SceneStart {
 }
 
 impl SceneStart {
-    /// The ball as play begins.
     pub(super) fn ball(&self) -> Ball {
         Ball::rolling(self.ball, self.velocity)
     }

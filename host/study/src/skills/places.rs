@@ -6,7 +6,6 @@ use hil_sim::Stream;
 use rules::limits::BALL_RADIUS;
 use rules::{FieldSpec, League};
 
-/// Random places on a field.
 pub(super) struct Places {
     pub(super) field: FieldSpec,
     pub(super) chance: Stream,
@@ -62,7 +61,6 @@ impl Places {
         Point::new(self.sign() * (far - self.off_board()), y)
     }
 
-    /// In a corner of the boards.
     pub(super) fn in_corner(&mut self) -> Point<Field> {
         let far = 0.5 * self.field.length + self.field.goal_line_margin;
         let wide = 0.5 * self.field.width + self.field.margin;

@@ -14,13 +14,8 @@ use arena::game::GameError;
 #[derive(Debug, thiserror::Error)]
 pub enum EvaluationError {
     /// A file could not be read or written.
-    #[error("{}: {error}", printable_path(.file))]
-    File {
-        /// Path of the file.
-        file: PathBuf,
-        /// The operating system's error.
-        error: io::Error,
-    },
+    #[error("{file}: {1}", file = printable_path(.0))]
+    File(PathBuf, io::Error),
     /// A line of a file is not of this evaluation's trials.
     #[error(
         "{}:{line}: {}; remove the line, or start in an empty directory",
@@ -66,14 +61,9 @@ pub enum EvaluationError {
     /// The team `strategy` plays, and no command of its strategy is given.
     #[error("the team `strategy` needs --strategy COMMAND, its program")]
     NoStrategy,
-    /// The files contain a trial twice, with different results.
-    #[error(
-        "trial {trial} is there twice and ended differently: the shards were not played by the same program"
-    )]
-    Unlike {
-        /// Number in the plan, from 0.
-        trial: usize,
-    },
+    /// The files contain the trial of this number twice, with different results.
+    #[error("trial {0} is there twice and ended differently: the shards were not played by the same program")]
+    Unlike(usize),
     /// Trials of the plan are missing in all files.
     #[error(
         "{trials} of {of} trials are missing, the first is {first}; play the shards that lack them again with the \
@@ -90,22 +80,12 @@ pub enum EvaluationError {
         /// The shards that lack them; empty where the files' names do not tell.
         shards: Vec<LackingShard>,
     },
-    /// A trial could not be played.
-    #[error("trial {trial}: {error}")]
-    Trial {
-        /// Number in the plan, from 0.
-        trial: usize,
-        /// The simulator's error that ended it.
-        error: SimulationError,
-    },
-    /// A match could not be played.
-    #[error("match {number}: {error}")]
-    Match {
-        /// Number in the plan, from 0.
-        number: usize,
-        /// The match's error that ended it.
-        error: GameError,
-    },
+    /// The trial of this number in the plan could not be played.
+    #[error("trial {0}: {1}")]
+    Trial(usize, SimulationError),
+    /// The match of this number in the plan could not be played.
+    #[error("match {0}: {1}")]
+    Match(usize, GameError),
     /// Trials could not be written as CSV.
     #[error("trials as CSV: {0}")]
     Csv(#[from] csv::Error),
@@ -128,7 +108,7 @@ pub struct LackingShard {
 impl EvaluationError {
     pub(crate) fn file(path: &Path) -> impl Fn(io::Error) -> Self + use<> {
         let file = path.to_owned();
-        move |error| Self::File { file: file.clone(), error }
+        move |error| Self::File(file.clone(), error)
     }
 }
 

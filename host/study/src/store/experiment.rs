@@ -40,6 +40,15 @@ pub trait Experiment: Sync {
     }
 }
 
+/// Seed of the job of that number among those of a kind: 32 bits, exact for every reader of JSON.
+pub(crate) fn job_seed(seed: u64, kind: &str, number: u32) -> u64 {
+    let mut hash = hil_sim::Fnv::default();
+    hash.add(kind.as_bytes());
+    hash.add(&seed.to_le_bytes());
+    hash.add(&number.to_le_bytes());
+    hash.value() & 0xffff_ffff
+}
+
 /// Progress of a shard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunProgress {
@@ -152,6 +161,6 @@ fn insert<R: Row>(rows: &mut BTreeMap<usize, R>, row: R) -> Result<(), Evaluatio
             Ok(())
         }
         Entry::Occupied(known) if *known.get() == row => Ok(()),
-        Entry::Occupied(_) => Err(EvaluationError::Unlike { trial }),
+        Entry::Occupied(_) => Err(EvaluationError::Unlike(trial)),
     }
 }

@@ -11,6 +11,7 @@ mod shard;
 pub use csv_rows::{csv_hash, to_csv};
 pub use difference::{Difference, in_words};
 pub use error::{EvaluationError, LackingShard};
+pub(crate) use experiment::job_seed;
 pub use experiment::{Experiment, RunProgress, StoredExperiment, merge};
 pub(crate) use line_file::{LineFile, OpenError, whole_len};
 pub use row_file::{Kept, Row, read};

@@ -43,17 +43,6 @@ fn the_crossing_is_on_the_line_that_was_crossed_first() {
 }
 
 #[test]
-fn a_goal_is_the_whole_ball_in_the_goal_and_under_its_edge() {
-    let field = b();
-    assert!(!ball_in_goal(&field, P, p(4.52, 0.0), 0.0));
-    assert!(ball_in_goal(&field, P, p(4.53, 0.49), 0.1));
-    assert!(!ball_in_goal(&field, P, p(4.53, 0.51), 0.0));
-    assert!(!ball_in_goal(&field, P, p(4.53, 0.0), 0.17));
-    assert!(!ball_in_goal(&field, P, p(4.69, 0.0), 0.0), "behind the goal");
-    assert!(!ball_in_goal(&field, P, p(-4.53, 0.0), 0.0));
-}
-
-#[test]
 fn a_goal_does_not_count_with_too_many_robots_from_high_or_after_a_foul() {
     assert_eq!(no_goal(6, 6, 0.14, Some(2.1)), None);
     assert_eq!(no_goal(6, 5, 0.0, None), Some(NoGoal::TooManyRobots));

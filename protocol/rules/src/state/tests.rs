@@ -9,7 +9,6 @@ use crate::League;
 const B: Colour = Colour::Blue;
 const Y: Colour = Colour::Yellow;
 const S: u64 = 1_000_000;
-const COLOURS: [Colour; 2] = [Y, B];
 
 fn limits() -> Limits {
     League::DivisionB.limits().unwrap()
@@ -31,21 +30,6 @@ fn after(commands: &[RefereeCommand]) -> (GameState, u64) {
     (state, now)
 }
 
-fn commands() -> Vec<RefereeCommand> {
-    let with = COLOURS.into_iter().flat_map(|who| {
-        [
-            RefereeCommand::PrepareKickoff(who),
-            RefereeCommand::PreparePenalty(who),
-            RefereeCommand::FreeKick(who),
-            RefereeCommand::Timeout(who),
-            RefereeCommand::BallPlacement(who),
-        ]
-    });
-    let plain =
-        [RefereeCommand::Halt, RefereeCommand::Stop, RefereeCommand::NormalStart, RefereeCommand::ForceStart];
-    plain.into_iter().chain(with).collect()
-}
-
 /// For every phase a path that leads to it, over edges of the graph only.
 fn sequences() -> Vec<(Phase<Colour>, Vec<RefereeCommand>)> {
     let stop = RefereeCommand::Stop;
@@ -54,7 +38,7 @@ fn sequences() -> Vec<(Phase<Colour>, Vec<RefereeCommand>)> {
         (Phase::Stop, vec![RefereeCommand::Halt, stop]),
         (Phase::Run, vec![stop, RefereeCommand::ForceStart]),
     ];
-    for who in COLOURS {
+    for who in Colour::ALL {
         let kickoff = RefereeCommand::PrepareKickoff(who);
         let penalty = RefereeCommand::PreparePenalty(who);
         sequences.extend([
@@ -97,7 +81,7 @@ fn freedom(phase: Phase<Colour>) -> u32 {
 fn every_command_in_every_phase_has_a_safe_reading() {
     let mut counts = [0; 4];
     for (phase, path) in sequences() {
-        for command in commands() {
+        for command in RefereeCommand::all() {
             let (mut state, now) = after(&path);
             let received = state.receive(command, now + S, at(0.0, 0.0));
             let got = state.phase();
@@ -278,10 +262,9 @@ fn a_free_kick_that_is_ordered_again_after_it_was_in_play_is_a_new_one() {
 }
 
 #[test]
-fn stages_are_played_or_breaks_or_before() {
-    let played = Stage::ALL.iter().filter(|stage| stage.is_played()).count();
+fn five_of_the_stages_are_breaks() {
     let breaks = Stage::ALL.iter().filter(|stage| stage.is_break()).count();
-    assert_eq!((played, breaks, Stage::ALL.len()), (5, 5, 14));
+    assert_eq!((breaks, Stage::ALL.len()), (5, 14));
     assert!(Stage::ALL.is_sorted());
 }
 
@@ -294,7 +277,7 @@ fn no_commands_start_robots_from_halt_within_two_seconds_without_stop() {
         bits ^= bits << 17;
         bits % below
     };
-    let (all, mut state, mut now) = (commands(), GameState::new(), 0);
+    let (all, mut state, mut now) = (RefereeCommand::all().collect::<Vec<_>>(), GameState::new(), 0);
     // Time of the first command that would let robots move out of HALT or a time-out.
     let (mut stands, mut called) = (false, None);
     let (mut held, mut moved) = (0, 0);

@@ -66,7 +66,6 @@ fn must(must: Must) -> &'static str {
     }
 }
 
-/// The phase without its team.
 fn bare(phase: Phase<Colour>) -> String {
     let name = format!("{phase:?}");
     name.split('(').next().unwrap_or_default().to_owned()

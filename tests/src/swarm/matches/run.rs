@@ -117,7 +117,6 @@ fn perform(game: &mut Game<'_>, act: Act) -> bool {
     }
 }
 
-/// State of the checks.
 struct Watch {
     outcome: Outcome,
     field: FieldSpec,

@@ -8,10 +8,9 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use critical_section::Mutex;
 use embassy_net::udp::UdpSocket;
 use embassy_time::{Duration, Instant, Ticker};
-use geometry::Twist;
 use protocol::frame::FRAME_LEN_MAX;
 use protocol::link::Packet;
-use protocol::robot_io::{ActuatorFrame, Health, SensorFrame, WHEELED_STEP};
+use protocol::robot_io::{ActuatorFrame, SensorFrame, WHEELED_STEP};
 use runtime::ports::{BodyPort, RadioReceiver, RadioSender, Senses as SensesPort};
 use runtime::progress::RobotPart;
 
@@ -34,7 +33,6 @@ impl RadioReceiver for UdpReceiver {
     }
 }
 
-/// Sender of frames as UDP datagrams.
 pub(crate) struct UdpSender {
     pub(crate) socket: &'static UdpSocket<'static>,
     pub(crate) to: SocketAddrV4,
@@ -103,21 +101,8 @@ impl SensesPort for Senses {
         let now = Instant::now();
         let last = critical_section::with(|cs| SEEN.borrow_ref(cs).clone());
         let fresh = last.filter(|(at, _)| now.duration_since(*at) <= SENSOR_FRAME_AGE_MAX);
-        fresh.map_or_else(nothing, |(_, snapshot)| snapshot)
-    }
-}
-
-/// Sensor frame of a robot whose body is silent: it stands, and has neither ball nor kicker.
-fn nothing() -> SensorFrame {
-    SensorFrame {
-        pose: None,
-        ball: None,
-        opponents: heapless::Vec::new(),
-        ball_contact: false,
-        busy: false,
-        odometry: Twist::default(),
-        health: Health::default(),
-        camera: None,
+        // A robot whose body is silent stands, and has neither ball nor kicker.
+        fresh.map(|(_, snapshot)| snapshot).unwrap_or_default()
     }
 }
 

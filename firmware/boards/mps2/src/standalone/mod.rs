@@ -62,7 +62,6 @@ fn main() -> ! {
     })
 }
 
-/// Provisioned page of the robot.
 fn page() -> &'static [u8] {
     // SAFETY: plain memory of the board above the firmware (build.rs), never written after the start.
     unsafe { core::slice::from_raw_parts(protocol::slot::PAGE_ADDRESS as *const u8, PAGE_LEN) }

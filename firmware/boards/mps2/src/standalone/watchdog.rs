@@ -8,7 +8,6 @@ use runtime::ports::Watchdog;
 use super::{console::print, fault};
 use crate::parts;
 
-/// Watchdog of the chip, running.
 pub(crate) struct BoardWatchdog(());
 
 /// Starts it; from now on it must be fed.

@@ -14,7 +14,6 @@ use ssl::event::GameEventType;
 use super::super::event::Restart;
 use super::super::field_staff::WorldOrder;
 use super::super::flow::is_reachable;
-use super::super::scene::COLOURS;
 use super::{RemoteMatch, places};
 use crate::small_size::{Robot, World};
 
@@ -58,7 +57,7 @@ pub struct Assistant {
     /// Number of manual placements since the last command, and the time of the last.
     puts: u32,
     put_at: Option<Instant>,
-    /// Both teams, in the order of [`COLOURS`].
+    /// Both teams, in the order of [`Colour::ALL`].
     teams: [Team; 2],
 }
 
@@ -86,7 +85,7 @@ impl Assistant {
             (self.puts, self.put_at, self.ball) = (0, None, None);
         }
         let mut deeds: Vec<Deed> = self.put_ball(game, world).into_iter().collect();
-        for (index, colour) in COLOURS.into_iter().enumerate() {
+        for (index, colour) in Colour::ALL.into_iter().enumerate() {
             deeds.extend(self.teams[index].look(game, world, colour));
         }
         deeds

@@ -13,7 +13,7 @@ use rules::{Colour, Phase, limits};
 
 use super::super::event::{Invalid, Kind, PenaltyEnd, RefereeEvent, Restart, ShotEvent, What};
 use super::super::look::Sight;
-use super::super::scene::{COLOURS, Scene, is_running};
+use super::super::scene::{Scene, is_running};
 use super::super::watch::Watch;
 use super::RemoteMatch;
 use crate::small_size::{PhysicsEvent as WorldEvent, World};
@@ -40,7 +40,7 @@ pub struct AutoReferee {
     stopping: Option<Instant>,
     /// True once the success of this placement was reported.
     placed: bool,
-    /// The last foul of each team that did not stop the game, in the order of [`COLOURS`].
+    /// The last foul of each team that did not stop the game, in the order of [`Colour::ALL`].
     fouls: [Option<(Kind, Instant)>; 2],
 }
 
@@ -97,7 +97,7 @@ impl AutoReferee {
             return Vec::new();
         }
         if kind.is_non_stopping_foul() {
-            for (team, foul) in COLOURS.into_iter().zip(&mut self.fouls) {
+            for (team, foul) in Colour::ALL.into_iter().zip(&mut self.fouls) {
                 if event.by.is_none_or(|by| by == team) {
                     *foul = Some((kind, event.at));
                 }
@@ -148,7 +148,7 @@ impl AutoReferee {
 
     fn invalid(&self, game: &RemoteMatch, scorer: Colour, shot: &ShotEvent, at: Instant) -> Option<Invalid> {
         use rules::legality::NoGoal;
-        let foul = self.fouls[usize::from(scorer == COLOURS[1])];
+        let foul = self.fouls[usize::from(scorer == Colour::Blue)];
         let since = foul.map(|(_, foul)| at.since(foul).as_secs_f32());
         let allowed = game.allowed(scorer).unwrap_or(u32::MAX);
         Some(match no_goal(shot.robots, allowed, shot.max_height, since)? {

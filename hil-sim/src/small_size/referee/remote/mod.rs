@@ -27,7 +27,7 @@ pub use ci::CiMatch;
 
 use super::account::{Account, Accounts};
 use super::event::Restart;
-use super::scene::{self, COLOURS, GameView};
+use super::scene::{self, GameView};
 use super::settings::TeamSettings;
 use super::{NoRules, wire};
 
@@ -196,7 +196,7 @@ impl RemoteMatch {
         let may = |team: &Colour| self.may_place(*team);
         let mut failed = self.failed_placements();
         match (failed.next(), failed.next()) {
-            (None, _) => COLOURS.into_iter().find(may),
+            (None, _) => Colour::ALL.into_iter().find(may),
             (Some(team), None) => team.map(Colour::other).filter(may),
             (Some(_), Some(_)) => None,
         }
@@ -253,18 +253,7 @@ fn colour_of(team: i32) -> Option<Colour> {
 /// The command with that number on the wire; none for obsolete ones (goals, indirect free kicks) and unknown
 /// numbers.
 fn command_of(number: i32) -> Option<RefereeCommand> {
-    let of_teams = COLOURS.into_iter().flat_map(|team| {
-        [
-            RefereeCommand::PrepareKickoff(team),
-            RefereeCommand::PreparePenalty(team),
-            RefereeCommand::FreeKick(team),
-            RefereeCommand::Timeout(team),
-            RefereeCommand::BallPlacement(team),
-        ]
-    });
-    let plain =
-        [RefereeCommand::Halt, RefereeCommand::Stop, RefereeCommand::NormalStart, RefereeCommand::ForceStart];
-    plain.into_iter().chain(of_teams).find(|command| wire::command(*command) as i32 == number)
+    RefereeCommand::all().find(|command| wire::command(*command) as i32 == number)
 }
 
 /// Silence after which a controller is not followed any more: it sends every 25 ms.

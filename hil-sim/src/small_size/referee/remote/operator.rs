@@ -15,13 +15,12 @@ use ssl::event::GameEventType;
 use ssl::referee as packet;
 
 use super::super::event::Restart;
-use super::super::scene::{COLOURS, is_running};
+use super::super::scene::is_running;
 use super::super::settings::{MatchClock, RefereeSettings};
 use super::RemoteMatch;
 use crate::rng::Stream;
 use crate::small_size::Ball;
 
-/// The operator of a controller.
 #[derive(Clone, Debug)]
 pub(super) struct Operator {
     settings: RefereeSettings,
@@ -71,7 +70,7 @@ impl Operator {
             match_type: Some(packet::MatchType::Friendly as i32),
             max_robots_per_team: settings.max_robots.map(i32::from),
         })];
-        changes.extend(COLOURS.map(|team| {
+        changes.extend(Colour::ALL.map(|team| {
             let own = settings.team(team);
             ChangeOf::UpdateTeamState(UpdateTeamState {
                 for_team: Some(wire(team) as i32),
@@ -84,7 +83,6 @@ impl Operator {
         changes
     }
 
-    /// The acts due now in this match.
     pub(super) fn acts(&mut self, game: &RemoteMatch, ball: &Ball) -> Vec<ChangeOf> {
         let age = game.now.since(protocol::Instant(game.state.since()));
         let running = is_running(game.phase());
@@ -119,7 +117,7 @@ impl Operator {
     fn command(&mut self, game: &RemoteMatch, ball: &Ball, age: Duration) -> Option<ChangeOf> {
         match game.phase() {
             Phase::Halt => {
-                let substitutes = COLOURS.into_iter().any(|team| game.substitutes(team));
+                let substitutes = Colour::ALL.into_iter().any(|team| game.substitutes(team));
                 (age >= self.settings.halt && !substitutes).then(|| command(CommandType::Stop, Team::Unknown))
             }
             Phase::Stop if game.next().is_none() && age >= STOP_WITHOUT_NEXT_MAX => {
@@ -148,7 +146,7 @@ impl Operator {
 
 /// True once the match is over: the controller leaves it to its operator to end it.
 pub(super) fn is_over(game: &RemoteMatch) -> bool {
-    let scores = COLOURS.map(|team| game.team(team).map_or(0, |info| info.score));
+    let scores = Colour::ALL.map(|team| game.team(team).map_or(0, |info| info.score));
     let decided = scores.iter().max() >= Some(&limits::GOALS_MAX)
         && scores[0].abs_diff(scores[1]) >= limits::GOALS_LEAD;
     let time_up = game.stage == Stage::SecondHalf && stage_left(game) < 0;
@@ -168,7 +166,6 @@ fn command(kind: CommandType, team: Team) -> ChangeOf {
     ChangeOf::NewCommand(NewCommand { command: Some(command) })
 }
 
-/// The change as an act of the operator.
 pub(super) fn act(change: ChangeOf) -> ApiInput {
     ApiInput { change: Some(Change { change: Some(change) }), ..ApiInput::default() }
 }

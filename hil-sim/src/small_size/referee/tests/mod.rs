@@ -22,7 +22,6 @@ use rules::{Colour, League, Phase};
 
 use super::*;
 
-/// A match on a stage.
 struct Stage {
     referee: InternalReferee,
     ball: Option<BallSeen>,
@@ -320,7 +319,6 @@ impl Stage {
         self.referee.events().iter().filter(|event| event.what.kind() == kind).count()
     }
 
-    /// The only event of that kind.
     fn only(&self, kind: Kind) -> &RefereeEvent {
         let mut same = self.referee.events().iter().filter(|event| event.what.kind() == kind);
         let first = same.next().unwrap_or_else(|| panic!("no {kind:?} in {:#?}", self.referee.events()));
@@ -335,7 +333,6 @@ impl Stage {
         event
     }
 
-    /// The restart that follows, and its position.
     fn assert_restart(&self, next: Restart, place: Point<Field>) {
         assert_eq!(self.referee.next(), Some(next));
         let placement = self.referee.placement().unwrap();

@@ -8,14 +8,14 @@ use rules::{Colour, FieldSpec, Phase, limits};
 
 use super::super::event::{RefereeEvent, What};
 use super::super::observation::RobotSeen;
-use super::super::scene::{COLOURS, Scene};
+use super::super::scene::Scene;
 use super::Episodes;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Areas {
     attackers: Episodes<Who>,
     defenders: Episodes<Who>,
-    /// Time of each team's last foul of being too close, in the order of [`COLOURS`].
+    /// Time of each team's last foul of being too close, in the order of [`Colour::ALL`].
     too_close: [Option<Instant>; 2],
 }
 
@@ -28,7 +28,7 @@ impl Areas {
     pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<RefereeEvent>) {
         // Teams that change ends drive through each other's areas; on a real field their robots are carried.
         if matches!(scene.game.phase, Phase::Stop | Phase::FreeKick(_)) && !scene.game.before_half {
-            for (team, raised) in COLOURS.into_iter().zip(&mut self.too_close) {
+            for (team, raised) in Colour::ALL.into_iter().zip(&mut self.too_close) {
                 events.extend(too_close(scene, team, raised));
             }
         }

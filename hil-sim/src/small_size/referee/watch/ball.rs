@@ -8,7 +8,7 @@ use protocol::{Instant, Who};
 use rules::{Colour, Phase, legality, limits};
 
 use super::super::event::{RefereeEvent, What};
-use super::super::scene::{COLOURS, Scene};
+use super::super::scene::Scene;
 use super::{Episodes, Touches};
 
 /// Monitor of speed, dribbling, double touch, keeper and progress.
@@ -110,7 +110,7 @@ impl BallWatch {
     fn keeper_held(&mut self, scene: &Scene<'_>) -> Option<RefereeEvent> {
         let game = scene.game;
         let within = |team: &Colour| game.field.in_penalty_area(game.own_end(*team), scene.ball.position);
-        let Some(team) = COLOURS.into_iter().find(within) else {
+        let Some(team) = Colour::ALL.into_iter().find(within) else {
             self.held = None;
             return None;
         };

@@ -12,7 +12,7 @@ use rules::{Colour, limits};
 
 use super::super::event::{RefereeEvent, What};
 use super::super::observation::{CrashSeen, RobotSeen};
-use super::super::scene::{COLOURS, Scene};
+use super::super::scene::Scene;
 use super::Episodes;
 
 #[derive(Clone, Debug, Default)]
@@ -20,7 +20,7 @@ pub(super) struct Bodies {
     crashes: Episodes<[Who; 2]>,
     /// Distance that the first has pushed the second, and the time of the last push.
     pushes: BTreeMap<[Who; 2], Push>,
-    /// Since when a team encloses the ball, in the order of [`COLOURS`].
+    /// Since when a team encloses the ball, in the order of [`Colour::ALL`].
     closed: [Option<Instant>; 2],
     before: Option<Instant>,
 }
@@ -43,13 +43,13 @@ impl Bodies {
             self.closed = [None; 2];
             return;
         }
-        for yellow in scene.robots.iter().filter(|robot| robot.who.colour == COLOURS[0]) {
-            for blue in scene.robots.iter().filter(|robot| robot.who.colour == COLOURS[1]) {
+        for yellow in scene.robots.iter().filter(|robot| robot.who.colour == Colour::Yellow) {
+            for blue in scene.robots.iter().filter(|robot| robot.who.colour == Colour::Blue) {
                 events.extend(self.push(scene, yellow, blue, dt));
                 events.extend(self.push(scene, blue, yellow, dt));
             }
         }
-        for (team, since) in COLOURS.into_iter().zip(&mut self.closed) {
+        for (team, since) in Colour::ALL.into_iter().zip(&mut self.closed) {
             events.extend(holding(scene, team, since));
         }
     }

@@ -10,7 +10,6 @@ use super::super::scene::Scene;
 use super::Touches;
 use protocol::Who;
 
-/// Monitor of the ball in a penalty.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PenaltyWatch {
     /// Maximum advance of the ball towards the goal, m.

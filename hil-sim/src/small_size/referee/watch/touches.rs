@@ -9,7 +9,7 @@ use protocol::{Instant, Who};
 use rules::{Colour, limits};
 
 use super::super::observation::RobotSeen;
-use super::super::scene::{COLOURS, Scene};
+use super::super::scene::Scene;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
@@ -29,7 +29,7 @@ pub(super) struct Contact {
 pub(super) struct Touches {
     last: Option<Touch>,
     contacts: BTreeMap<Who, Contact>,
-    /// Maximum height since each team's last touch, in the order of [`COLOURS`], m.
+    /// Maximum height since each team's last touch, in the order of [`Colour::ALL`], m.
     heights: [f32; 2],
     /// Time of each team's last touch.
     times: [Option<Instant>; 2],
@@ -92,7 +92,7 @@ fn is_close(scene: &Scene<'_>, robot: &RobotSeen) -> bool {
 }
 
 fn index(team: Colour) -> usize {
-    usize::from(team == COLOURS[1])
+    usize::from(team == Colour::Blue)
 }
 
 /// Gap between hull and ball that a camera sees, m: about the ball's radius, estimated. (The dribbler opening

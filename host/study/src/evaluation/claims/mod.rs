@@ -13,7 +13,7 @@ mod point;
 use serde::Serialize;
 
 use super::tables::{Extent, TableRow};
-use crate::statistics::holm;
+use crate::statistics::holm_by_family;
 
 pub use point::{ClaimPoint, Standing};
 pub(super) use point::{Rows, p_text};
@@ -67,12 +67,9 @@ impl Judgement {
     pub(super) fn new(points: Vec<Option<ClaimPoint>>) -> Self {
         let all = points.len();
         let mut points: Vec<ClaimPoint> = points.into_iter().flatten().collect();
-        let tested: Vec<usize> = (0..points.len()).filter(|i| points[*i].p.is_some()).collect();
-        let family: Vec<f64> = tested.iter().filter_map(|i| points[*i].p).collect();
-        for (i, p) in tested.into_iter().zip(holm(&family)) {
-            points[i].p_holm = Some(p);
-        }
-        for point in &mut points {
+        let tests: Vec<_> = points.iter().map(|point| ((), point.p)).collect();
+        for (point, p) in points.iter_mut().zip(holm_by_family(&tests)) {
+            point.p_holm = p;
             point.stand();
         }
         let stands = |standing| points.iter().filter(|point| point.stands == standing).count();

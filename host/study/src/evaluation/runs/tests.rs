@@ -112,7 +112,7 @@ fn another_evaluation_is_not_mixed_in() {
     let mut unlike = kept.clone();
     unlike.rows[0].time_s += 1.0;
     assert!(matches!(merge(vec![kept.clone(), kept.clone()]), Ok((_, rows)) if rows == kept.rows));
-    assert!(matches!(merge(vec![kept.clone(), unlike]), Err(EvaluationError::Unlike { trial: 0 })));
+    assert!(matches!(merge(vec![kept.clone(), unlike]), Err(EvaluationError::Unlike(0))));
     assert!(matches!(merge::<TrialRow>(Vec::new()), Err(EvaluationError::Nothing)));
 }
 

@@ -114,7 +114,6 @@ struct Matches<'r> {
 
 /// Matches of a library.
 struct Played {
-    /// Hash of the library.
     library: u64,
     works: Vec<MatchWork>,
     matches: Vec<LearningMatch>,
@@ -290,7 +289,6 @@ fn sign(settings: &LearnSettings, edit: &Edit, work: &MatchWork) -> f64 {
     if null_control::swaps(settings, edit, work.stream as u8, work.index) { -1.0 } else { 1.0 }
 }
 
-/// Goals ahead at the end.
 fn ahead(played: &LearningMatch) -> f64 {
     let [ours, theirs] = played.goals;
     f64::from(ours) - f64::from(theirs)

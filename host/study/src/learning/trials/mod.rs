@@ -95,7 +95,6 @@ impl Sizes {
         }
     }
 
-    /// Starts of a stream that are played at once.
     fn of_stream(self, stream: StartStream) -> u32 {
         match stream {
             StartStream::Exploration => self.explore,
