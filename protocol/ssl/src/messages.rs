@@ -17,7 +17,7 @@ macro_rules! messages {
     )+ };
 }
 
-/// Declares game events with [`messages!`]: `team NAME` opens with the team, `robot NAME` with team and robot.
+/// Declares game events by [`messages!`]: `team NAME` opens with the team, `robot NAME` with team and robot.
 macro_rules! events {
     ($($(#[$about:meta])* $of:ident $name:ident { $($field:tt)* })+) => {
         $(events! { @$of $(#[$about])* $name { $($field)* } })+
