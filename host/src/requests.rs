@@ -42,7 +42,6 @@ impl Requests {
         self.advantage(view);
     }
 
-    /// The next request to send.
     pub(crate) fn poll(&mut self) -> Option<TeamPortRequest> {
         self.out.pop_front()
     }

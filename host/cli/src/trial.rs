@@ -165,7 +165,6 @@ fn on_page(args: &TrialArgs) -> Result<Legged, Failure> {
     Ok(Legged::new(args.page.open(title, true, Powers::None, explanations)?, base))
 }
 
-/// Plays the trial.
 fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialReport, Failure> {
     let approach = match args.approach {
         ApproachLabel::Cbr => Approach::Cases,

@@ -161,7 +161,7 @@ fn a_case_is_played_from_its_own_situation() {
 
 #[test]
 fn a_taken_port_ends_a_match_with_a_word_about_what_to_do() {
-    let first = Program::start(&["play", "--duration", "600", "--listen", "127.0.0.1:0"]);
+    let first = Program::play(&[]);
     let second = Command::new(env!("CARGO_BIN_EXE_onetwo"))
         .args(["play", "--listen", first.address()])
         .output()

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use host::radio::To;
-use host::record::header::{HostHeader, RecordingHeader};
+use host::record::header::RecordingHeader;
 use host::record::recheck::Recheck;
 use host::record::trace::{Reader, RecordKind, Writer};
 use host::referee::SenderAddress;
@@ -136,14 +136,9 @@ fn cut_and_foreign_files_are_reported_with_their_place() {
 fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
     let settings = HostSettings::new(Colour::Blue, League::DivisionB, 7);
     let header = RecordingHeader {
-        case_table: None,
         version: "0".to_owned(),
         commit: "unknown".to_owned(),
-        seed: None,
-        league: League::DivisionB.name().to_owned(),
-        world: None,
-        zero_unix_us: None,
-        hosts: vec![HostHeader::of(&settings, Instant(0))],
+        ..RecordingHeader::of(&settings)
     };
     let mut host = Host::new(settings, Instant(0));
     let json = header.to_json();

@@ -58,6 +58,7 @@ pub struct Moment<'a> {
 }
 
 /// Fills scenes.
+#[derive(Default)]
 pub struct Composer {
     log: Arc<ProgramLog>,
     base: Option<CaseBase<'static>>,
@@ -87,21 +88,7 @@ impl Composer {
             log,
             base: library_handle.map(LibraryHandle::lasting_base),
             names: Names::new(library_handle),
-            images: Images::default(),
-            cameras: Cameras::default(),
-            links: Links::default(),
-            rate: Rate::default(),
-            trail: VecDeque::new(),
-            events: EventFeed::default(),
-            cycles: Default::default(),
-            clocks: Clocks::default(),
-            faults: Faults::default(),
-            health_checks: Default::default(),
-            since: Default::default(),
-            possession: Possession::default(),
-            overlay_builder: OverlayBuilder::default(),
-            match_events: Vec::new(),
-            alarmed: Vec::new(),
+            ..Self::default()
         }
     }
 

@@ -9,7 +9,6 @@ use ssl::referee::Referee;
 
 use crate::referee_event::{RefereeEventFinder, RefereeEventKind};
 
-/// Detects new events.
 #[derive(Debug, Default)]
 pub(super) struct EventFeed {
     finder: RefereeEventFinder,

@@ -73,7 +73,6 @@ pub struct RunSettings<'f> {
     pub moments: RecentMoments,
 }
 
-/// State of the viewers' controls.
 struct UserControls {
     paused: bool,
     steps: u32,

@@ -71,7 +71,6 @@ struct LearnedValue {
     value: f32,
     /// Standard error, in the value's unit.
     error: f32,
-    /// Number of observations.
     samples: usize,
 }
 

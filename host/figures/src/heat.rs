@@ -50,12 +50,7 @@ pub enum Scale<'a> {
 /// Maximum number of distinguishable categories.
 pub const CATEGORIES_MAX: usize = 8;
 
-/// The figure as an SVG, in mm with a width of about 900 px.
-pub fn heat_map(map: &HeatMap<'_>) -> String {
-    heat_maps(std::slice::from_ref(map))
-}
-
-/// Maps beside each other in one figure, each about 900 px wide, on the paper of the first.
+/// Maps beside each other in one figure as an SVG, in mm, each about 900 px wide, on the paper of the first.
 pub fn heat_maps(maps: &[HeatMap<'_>]) -> String {
     let mut page = Svg::default();
     let (mut across, mut low, mut high, mut px_per_mm) = (0.0, 0.0_f64, 0.0_f64, 0.1);
@@ -287,7 +282,7 @@ mod tests {
     #[test]
     fn a_cell_has_the_colour_of_its_value_at_its_place() {
         let values = [Some(0.0), Some(1.0), Some(0.5), None];
-        let svg = heat_map(&map(&values, Scale::Continuous { low: 0.0, high: 1.0, unit: "" }));
+        let svg = heat_maps(&[map(&values, Scale::Continuous { low: 0.0, high: 1.0, unit: "" })]);
         // Half the field is 2700 × 1800 mm; a cell's upper edge is its y on the page, which grows downwards.
         for (x, y, fill) in [
             ("-2700.0", "0.0", "#440154"),
@@ -322,7 +317,7 @@ mod tests {
 
     #[test]
     fn missing_values_are_drawn_as_unknown() {
-        let svg = heat_map(&map(&[], Scale::Categorical { names: &["none"] }));
+        let svg = heat_maps(&[map(&[], Scale::Categorical { names: &["none"] })]);
         // A rectangle for each of the two rows, as its two cells have one colour.
         assert_eq!(svg.matches(r##"width="5400.0" height="1800.0" fill="#d0d0d0" stroke"##).count(), 2);
     }

@@ -29,7 +29,7 @@ pub use axis::{AXIS_HEIGHT, Axis, GRID_COLOR};
 pub use case::{CasePicture, Overlay, case_picture};
 pub use dots::{Dot, DotRow, dot_axis, dot_panel};
 pub use field::{FieldLines, draw as draw_field, half_extent, lines as field_lines};
-pub use heat::{CATEGORIES_MAX, HeatMap, Scale, heat_map, heat_maps, scale_bar, shade, squares};
+pub use heat::{CATEGORIES_MAX, HeatMap, Scale, heat_maps, scale_bar, shade, squares};
 pub use page::{Page, dark_colors, palette};
 pub use plot::{Figure, FigureFile, Key, PANEL_WIDTH, Panel, Shape, mark_style, whisker};
 pub use sheet::sheet;

@@ -1,6 +1,5 @@
 //! `files`: the page's static files. They are part of the program: no installation, build or search path.
 
-/// A file of the page.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct File {
     /// Path in the request.

@@ -126,7 +126,6 @@ pub(crate) enum NoRequest {
     Refused(Status),
 }
 
-/// Head of a request.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Head {
     pub(crate) method: String,
@@ -135,7 +134,6 @@ pub(crate) struct Head {
     headers: Vec<(String, Vec<u8>)>,
     /// The connection goes on after the answer.
     keeps: bool,
-    /// Bytes of the body.
     length: usize,
 }
 

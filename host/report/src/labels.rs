@@ -51,7 +51,6 @@ pub(crate) const fn opponents(configuration: Configuration) -> &'static str {
     }
 }
 
-/// Title of a table of the paper.
 pub(crate) const fn table(table: u8) -> &'static str {
     match table {
         1 => "Outcomes, possession and time against a defender and a goalie",

@@ -65,13 +65,6 @@ pub struct ParameterValue {
     pub default: Option<Value>,
 }
 
-impl ParameterValue {
-    /// Whether it has another value than in an empty file.
-    pub fn is_changed(&self) -> bool {
-        self.value != self.default
-    }
-}
-
 impl Parameter {
     /// The table that it is in; none: the top of the file.
     pub fn table(&self) -> Option<&'static str> {
@@ -388,7 +381,7 @@ mod tests {
     fn what_differs_from_an_empty_file_is_marked_and_nothing_else() {
         let changed = |text: &str| -> Vec<_> {
             let list = read(text).unwrap().parameters();
-            list.into_iter().filter(ParameterValue::is_changed).map(|one| (one.key, one.robot)).collect()
+            list.into_iter().filter(|one| one.value != one.default).map(|one| (one.key, one.robot)).collect()
         };
         assert_eq!(changed(""), []);
         assert_eq!(changed("keeper = 0\ncolour = 'blue'"), []);

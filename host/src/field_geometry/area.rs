@@ -93,7 +93,6 @@ fn find<'a>(
     size.field_lines.iter().find(|line| line.name == name || line.r#type == Some(kind as i32))
 }
 
-/// Whether this is the arc of that name.
 pub(super) fn is_arc(arc: &FieldCircularArc, name: &str) -> bool {
     arc.name == name || (name == "CenterCircle" && arc.r#type == Some(FieldShapeType::CenterCircle as i32))
 }

@@ -57,7 +57,6 @@ fn of_robot(text: &str, robot: RobotId) -> Option<&str> {
         .find(|lines| value(lines, "robot").is_some_and(|number| number == robot.number().to_string()))
 }
 
-/// Value of a key of one table.
 fn value(lines: &str, key: &str) -> Option<String> {
     let table = lines.split("\n[").next()?;
     let pairs = table.lines().filter_map(|line| line.split_once('='));

@@ -175,7 +175,6 @@ pub struct Reader<R: Read> {
     end: Option<TraceEnd>,
     /// Start of the next record, bytes of the uncompressed trace.
     at: u64,
-    /// Time of the last one.
     last: Option<Instant>,
     /// Of all that was read.
     sum: Crc,

@@ -67,7 +67,6 @@ impl Strictness {
     }
 }
 
-/// State of one referee source.
 #[derive(Clone, Debug)]
 pub(super) struct Source {
     pub(super) key: SourceKey,

@@ -162,7 +162,6 @@ pub(super) struct Channels {
     view: Sender<String>,
 }
 
-/// A thread for each socket and link.
 struct Threads {
     end: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,

@@ -270,7 +270,6 @@ mod tests {
         Mail::Vision(bytes, ([127, 0, 0, 1], 10_020).into())
     }
 
-    /// Bytes that the lanes hold.
     fn held(lanes: &Lanes) -> usize {
         lanes.vision.waiting.iter().map(|(bytes, _)| bytes.len()).sum::<usize>()
             + lanes.referee.waiting.iter().map(|(bytes, _)| bytes.len()).sum::<usize>()

@@ -7,7 +7,7 @@
 use geometry::{Attack, Point, Vector};
 use motion::ball::BallModel;
 use motion::trajectory::FreeLimits;
-use protocol::{Duration, Instant, RobotId};
+use protocol::{Instant, RobotId};
 use rules::contact;
 
 use super::pass::reach::Mover;
@@ -80,14 +80,6 @@ impl Possession {
             Self::Free | Self::Theirs(..) => None,
         }
     }
-
-    /// Time for which our robot has had it to itself.
-    pub fn ours_for(self, now: Instant) -> Option<Duration> {
-        match self {
-            Self::Ours(_, since) => Some(now.since(since)),
-            _ => None,
-        }
-    }
 }
 
 /// Whether the ball is before the robot's front plate and moves with it.
@@ -155,6 +147,7 @@ mod tests {
     use super::super::view::tests::view;
     use super::*;
     use geometry::Angle;
+    use protocol::Duration;
 
     fn goal() -> Point<Attack> {
         Point::new(4.5, 0.0)
@@ -197,7 +190,7 @@ mod tests {
         view.now = Instant(view.now.0 + 300_000);
         view.ball.as_mut().unwrap().position = Point::new(contact::TOUCHES_WITHIN + 0.02, 0.0);
         let kept = first.next(&view, RobotSet::default());
-        assert_eq!(kept.ours_for(view.now), Some(Duration::millis(300)));
+        assert!(matches!(kept, Possession::Ours(_, since) if view.now.since(since) == Duration::millis(300)));
         assert_eq!(Possession::Free.next(&view, RobotSet::default()), Possession::Free);
     }
 

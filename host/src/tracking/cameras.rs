@@ -73,7 +73,6 @@ impl LeastBySlot {
     }
 }
 
-/// State of one camera's clock.
 #[derive(Clone, Debug, Default)]
 struct CameraClock {
     /// Stamp and arrival of the newest frame.
@@ -115,7 +114,6 @@ pub struct CameraStatus {
     pub unused_ms: Option<i64>,
 }
 
-/// Clocks of all cameras.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cameras {
     cameras: [CameraClock; CAMERAS_MAX],

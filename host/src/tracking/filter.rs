@@ -62,7 +62,6 @@ impl Spread {
     }
 }
 
-/// A point and its velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plane {
     /// Estimated place, m.
@@ -126,10 +125,8 @@ impl Plane {
     }
 }
 
-/// A heading and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turning {
-    /// Estimated heading.
     pub(super) heading: Angle,
     /// Angular velocity, rad/s, counter-clockwise.
     pub(super) rate: f32,

@@ -71,7 +71,6 @@ pub struct RobotCounts {
     pub wrong_name: u64,
 }
 
-/// Tracks of all robots.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Robots {
     believed: [[Option<Track>; RobotId::COUNT]; 2],
@@ -108,7 +107,6 @@ pub(super) struct Moved {
 struct Track {
     plane: Plane,
     turning: Turning,
-    /// Time of the state.
     at: Captured,
     /// Frame times of the last detection and of the last that counted.
     seen: Captured,

@@ -11,7 +11,6 @@ use crate::world::BallModels;
 /// No camera is mounted lower than the height of a chipped ball, m.
 const CAMERA_HEIGHT_MIN_M: f32 = 1.5;
 
-/// Position of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Camera {
     pub(super) above: Point<Field>,

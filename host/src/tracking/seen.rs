@@ -23,7 +23,6 @@ const SECONDS_MAX: f64 = 1e10;
 /// A moment on vision's clock, µs: since 1970, or since a simulator's start.
 pub(super) type Captured = i64;
 
-/// A robot in a camera frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RobotSeen {
     pub(super) who: Who,
@@ -40,7 +39,6 @@ pub(super) struct BallSeen {
     pub(super) confidence: f32,
 }
 
-/// Detections of one camera frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Frame {
     pub(super) at: Captured,

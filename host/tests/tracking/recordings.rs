@@ -116,7 +116,6 @@ fn off(place: Point<geometry::Field>, [x, y]: [f64; 2]) -> f64 {
     f64::hypot(f64::from(place.x()) - x, f64::from(place.y()) - y)
 }
 
-/// The given quantile of the errors.
 fn quantile(errors: &mut [f64], share: f64) -> f64 {
     errors.sort_by(f64::total_cmp);
     errors[((errors.len() - 1) as f64 * share) as usize]

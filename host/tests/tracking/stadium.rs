@@ -72,7 +72,6 @@ impl Stadium {
         Self { cameras: cameras.into_iter().enumerate().map(quarter).collect(), ..Self::one_camera(seed) }
     }
 
-    /// The geometry packet.
     pub(crate) fn geometry(&self) -> WrapperPacket {
         let calibration = |(i, camera): (usize, &Camera)| GeometryCameraCalibration {
             camera_id: i as u32,
@@ -114,7 +113,6 @@ impl Stadium {
         times.into_iter().map(|(t, camera, n)| (t, self.image(camera, n, t, &truth(t)))).collect()
     }
 
-    /// One camera frame.
     pub(crate) fn image(&mut self, number: usize, frame_number: u32, t: f64, truth: &Truth) -> WrapperPacket {
         let camera = self.cameras[number];
         let mut detection = DetectionFrame {

@@ -14,7 +14,6 @@ use rules::{Colour, League};
 use ssl::net::{addresses, resolve, resolve_destination, split_address};
 use study::store::Shard;
 
-/// A Small Size league by its name.
 pub(crate) fn league(name: &str) -> Result<League, String> {
     [League::Ssl2013, League::DivisionB, League::DivisionA]
         .into_iter()
@@ -143,7 +142,6 @@ pub(crate) fn robot_id(text: &str) -> Result<RobotId, String> {
     RobotId::try_from(number).map_err(|error| error.to_string())
 }
 
-/// A team's number on the radio.
 pub(crate) fn radio_team(text: &str) -> Result<TeamId, String> {
     let teams = [Colour::Yellow, Colour::Blue].map(TeamId::of);
     let team = text.parse().ok().map(TeamId).filter(|team| teams.contains(team));
@@ -205,7 +203,6 @@ pub(crate) fn profile(label: &str) -> Result<Profile, String> {
     Profile::from_label(label).ok_or_else(|| "take simulated or robots".to_owned())
 }
 
-/// Approach of the attackers of a trial.
 pub(crate) fn approach(label: &str) -> Result<brain::Approach, String> {
     arena::approach_from_label(label).ok_or_else(|| {
         let known: Vec<_> = arena::APPROACHES.map(arena::approach_label).into();
@@ -256,7 +253,6 @@ pub(crate) fn real_board(name: &str) -> Result<&'static Board, String> {
     })
 }
 
-/// An address in flash.
 pub(crate) fn flash_address(text: &str) -> Result<u32, String> {
     let parsed = match text.strip_prefix("0x") {
         Some(digits) => u32::from_str_radix(&digits.replace('_', ""), 16),

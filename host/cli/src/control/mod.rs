@@ -15,9 +15,7 @@ use std::process::ExitCode;
 use arena::cases::LibraryHandle;
 use clap::Args;
 use hil_sim::small_size::Parameters;
-use host::config::{
-    BallSettings, Calibration, DriveSettings, PracticeSettings, RobotLink, TeamConfig, TeamSettings,
-};
+use host::config::{Calibration, RobotLink, TeamConfig, TeamSettings};
 use host::run::{CONFIG_LEN_MAX, OutputFiles, Program, RunSettings, VirtualRobots};
 use protocol::RobotId;
 use ssl::net::addresses;
@@ -282,11 +280,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         game_controller: args.game_controller,
         strategy: args.strategy.clone(),
         calibration: args.kicks.clone(),
-        numbers: Vec::new(),
-        ball: BallSettings::default(),
-        limits: DriveSettings::default(),
-        tactics: None,
-        practice: PracticeSettings::default(),
+        ..TeamSettings::default()
     };
     let settings = flags.over(file);
     let reported = settings.vision.is_some();

@@ -110,7 +110,6 @@ impl SkillsArgs {
     }
 }
 
-/// The table as Markdown.
 fn markdown(rows: &[SkillRow]) -> String {
     let rows = rows.iter().map(|row| {
         let share = 100.0 * row.succeeded as f64 / row.tries.max(1) as f64;

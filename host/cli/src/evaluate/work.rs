@@ -225,7 +225,6 @@ pub(super) fn write_all(directory: &Path, files: Vec<(&str, Vec<u8>)>) -> Result
     })
 }
 
-/// Writes a file of results.
 pub(super) fn write(file: &Path, kind: FileKind, bytes: &[u8]) -> Result<(), Failure> {
     Ok(destination::write(file, kind, bytes)?)
 }

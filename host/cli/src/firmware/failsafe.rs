@@ -88,7 +88,6 @@ Below the brain, without its governor, each with its tests:
 | no page with a key, or a damaged one | it never drives and says nothing on the air | – | `qemu_free` |
 ";
 
-/// The table as Markdown.
 pub(super) fn table() -> String {
     let mut text = String::from(
         "| what is wrong | slower after | brakes, dribbler off, kicker discharged after | stands after | motors released after | moves again, once it is right |\n\

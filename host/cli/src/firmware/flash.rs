@@ -150,17 +150,21 @@ probe-rs is not installed; get it from https://probe.rs, or build it with `cargo
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_page_goes_first_and_to_its_address() {
-        let args = FlashArgs {
+    fn with_page(page: impl Into<PathBuf>) -> FlashArgs {
+        FlashArgs {
             board: parsers::real_board("stm32").unwrap(),
             robot: None,
             elf: None,
             chip: None,
-            page: Some("robot.page".into()),
+            page: Some(page.into()),
             page_address: None,
             probe: None,
-        };
+        }
+    }
+
+    #[test]
+    fn the_page_goes_first_and_to_its_address() {
+        let args = with_page("robot.page");
         let lines: Vec<_> =
             downloads(&args, Path::new("image")).iter().map(|arguments| arguments.join(" ")).collect();
         assert_eq!(
@@ -186,15 +190,7 @@ mod tests {
             page(&Provision { robot, team: TeamId(team), league: rules::League::DivisionB, keys }).to_vec()
         };
         let file = directory.join("robot.page");
-        let mut args = FlashArgs {
-            board: parsers::real_board("stm32").unwrap(),
-            robot: None,
-            elf: None,
-            chip: None,
-            page: Some(file.clone()),
-            page_address: None,
-            probe: None,
-        };
+        let mut args = with_page(&file);
         let good = page_of(1);
         let mut damaged = good.clone();
         damaged[20] ^= 1;

@@ -24,7 +24,6 @@ pub(super) struct Measured {
     pub(super) median: u32,
     /// Of the worst step.
     pub(super) worst: u32,
-    /// Number of measured steps.
     pub(super) steps: usize,
 }
 

@@ -109,7 +109,6 @@ fn check(file: &Path) -> Result<Provision, Failure> {
     read(&bytes, false).map_err(at(file))
 }
 
-/// Arguments of QEMU.
 fn qemu_arguments(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String> {
     let mut arguments: Vec<String> =
         ["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", serial]

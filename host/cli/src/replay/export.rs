@@ -146,7 +146,6 @@ fn write(
     table.flush()
 }
 
-/// A value as a cell of CSV.
 fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

@@ -69,7 +69,6 @@ pub(super) struct OtherField {
     pub(super) before: String,
 }
 
-/// Messages of one kind.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct OfKind {
     pub(super) messages: u64,
@@ -81,7 +80,6 @@ pub(super) struct OfKind {
     pub(super) rate: Rate,
 }
 
-/// One camera's frames.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Camera {
     pub(super) images: u64,

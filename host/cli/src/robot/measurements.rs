@@ -9,7 +9,6 @@ use super::derived::COUNTER_MAX;
 use super::fit::{PulseFit, SPEED_OF_NO_KICK};
 use crate::robot_description::DescriptionError;
 
-/// A row of two columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
     /// Line of the file, from 1.

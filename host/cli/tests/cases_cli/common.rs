@@ -87,7 +87,6 @@ pub(crate) fn worked_example(test: &str) -> PathBuf {
     library(test, &[("center/pass-around.toml", PASS_AROUND)])
 }
 
-/// Result of a run of the program.
 pub(crate) struct Run {
     pub(crate) code: i32,
     pub(crate) stdout: String,

@@ -24,7 +24,7 @@ const WANTED: &str = "(() => {
 const MISSED: &str = "wanted.filter((e) => e.isConnected && !reached.has(e)).map((e) => e.outerHTML.slice(0, 120)).join('\\n')";
 
 fn play() -> Program {
-    Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"])
+    Program::play(&["--seed", "2"])
 }
 
 fn show(tab: &mut Tab<'_>, name: &str) {

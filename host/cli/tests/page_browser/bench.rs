@@ -78,16 +78,11 @@ fn onetwo(arguments: &[&str], library: &Path) -> (bool, String) {
 fn a_moment_becomes_a_case_by_hand_and_keys_that_the_next_match_plays() {
     let library = library("chain");
     let directory = library.to_str().unwrap();
-    let program = Program::start(&[
-        "play",
+    let program = Program::play(&[
         "--library",
         directory,
         "--seed",
         "11",
-        "--duration",
-        "600",
-        "--listen",
-        "127.0.0.1:0",
         "--speed",
         "11",
         // Who plays by thresholds plays the cases that its robots retrieve.

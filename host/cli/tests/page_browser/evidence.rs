@@ -27,17 +27,7 @@ fn evidence_of_a_case_is_shown_and_a_proposal_is_taken_and_undone() {
     fs::write(beside.join("report.json"), json!({ "changes": [change] }).to_string()).unwrap();
 
     let directory = library.to_str().unwrap();
-    let program = Program::start(&[
-        "play",
-        "--library",
-        directory,
-        "--seed",
-        "2",
-        "--duration",
-        "600",
-        "--listen",
-        "127.0.0.1:0",
-    ]);
+    let program = Program::play(&["--library", directory, "--seed", "2"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?theme=dark"), 1400, 900).unwrap();
     tab.wait("window.onetwo?.store.scene?.robots.length === 12").unwrap();

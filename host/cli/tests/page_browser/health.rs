@@ -14,7 +14,7 @@ fn key(tab: &mut Tab<'_>, target: &str, key: &str) {
 
 #[test]
 fn plots_have_a_cursor_and_seek_and_the_log_is_searched() {
-    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let program = Program::play(&["--seed", "2"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?theme=dark&tab=health"), 1400, 900).unwrap();
     tab.wait("onetwo?.store.scene?.t > 6").unwrap();

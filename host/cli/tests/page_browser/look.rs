@@ -65,7 +65,7 @@ fn a_match_that_is_over_says_so_and_offers_what_next() {
 
 #[test]
 fn robots_goals_lists_and_keys_answer_a_hand() {
-    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let program = Program::play(&["--seed", "2"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?theme=dark&tab=health"), 1400, 760).unwrap();
     tab.wait("window.onetwo?.store.scene?.robots.length === 12 && onetwo.store.scene.t > 3").unwrap();
@@ -233,7 +233,7 @@ fn contrast(tab: &mut Tab<'_>) {
 
 #[test]
 fn a_narrow_screen_shows_candidates_as_cards() {
-    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let program = Program::play(&["--seed", "2"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url(""), 390, 844).unwrap();
     tab.resize(390, 844, true).unwrap();

@@ -29,17 +29,7 @@ fn number(tab: &mut Tab<'_>, script: &str) -> f64 {
 
 #[test]
 fn a_match_is_watched_asked_and_touched() {
-    let program = Program::start(&[
-        "play",
-        "--duration",
-        "600",
-        "--seed",
-        "2",
-        "--listen",
-        "127.0.0.1:0",
-        "--speed",
-        "2",
-    ]);
+    let program = Program::play(&["--seed", "2", "--speed", "2"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?theme=dark"), 1400, 900).unwrap();
     tab.wait("window.onetwo?.store.scene?.robots.length === 12").unwrap();

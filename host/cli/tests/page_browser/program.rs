@@ -16,6 +16,12 @@ pub(crate) struct Program {
 }
 
 impl Program {
+    /// Starts a match of ten minutes with its page.
+    #[allow(dead_code, reason = "one of the tests that share this file plays none")]
+    pub(crate) fn play(more: &[&str]) -> Self {
+        Self::start(&[&["play", "--duration", "600", "--listen", "127.0.0.1:0"], more].concat())
+    }
+
     /// Starts it and waits for the page's address.
     pub(crate) fn start(arguments: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_onetwo"))

@@ -14,19 +14,7 @@ fn open<'b>(browser: &'b mut Browser, program: &Program, tab: &str) -> Tab<'b> {
 
 #[test]
 fn a_kicker_is_tested_on_the_page_and_its_gain_is_taken() {
-    let program = Program::start(&[
-        "play",
-        "--world",
-        "weak-kickers",
-        "--duration",
-        "600",
-        "--seed",
-        "2",
-        "--speed",
-        "5",
-        "--listen",
-        "127.0.0.1:0",
-    ]);
+    let program = Program::play(&["--world", "weak-kickers", "--seed", "2", "--speed", "5"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = open(&mut browser, &program, "tune");
     tab.wait("document.querySelectorAll('#kicks-blue option').length === 6").unwrap();
@@ -61,7 +49,7 @@ fn a_kicker_is_tested_on_the_page_and_its_gain_is_taken() {
 
 #[test]
 fn a_moment_is_kept_returned_to_and_loaded_from_its_file() {
-    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let program = Program::play(&["--seed", "2"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = open(&mut browser, &program, "control");
     tab.wait("onetwo.store.scene.robots.some((r) => Math.hypot(...r.velocity) > 0.3)").unwrap();
@@ -100,7 +88,7 @@ fn a_moment_is_kept_returned_to_and_loaded_from_its_file() {
 
 #[test]
 fn a_skill_is_tried_beside_the_match_and_counted() {
-    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let program = Program::play(&["--seed", "2"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = open(&mut browser, &program, "control");
     tab.wait("document.querySelector('#skill-skill option')").unwrap();
@@ -120,7 +108,7 @@ fn a_skill_is_tried_beside_the_match_and_counted() {
 
 #[test]
 fn a_robot_driven_by_hand_stands_when_the_page_is_silent_and_in_a_halt() {
-    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let program = Program::play(&["--seed", "2"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = open(&mut browser, &program, "control");
     tab.wait("document.querySelectorAll('#hand-robot option').length === 12").unwrap();

@@ -14,7 +14,7 @@ fn robot(tab: &mut Tab<'_>, index: usize) -> [f64; 2] {
 
 #[test]
 fn touch_selects_drags_zooms_and_edits_a_case() {
-    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let program = Program::play(&["--seed", "2"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url(""), 390, 844).unwrap();
     tab.resize(390, 844, true).unwrap();

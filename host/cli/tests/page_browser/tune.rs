@@ -13,7 +13,7 @@ fn the_list_is_that_of_the_file_and_a_limit_set_on_the_page_slows_the_robots() {
     let printed = Command::new(env!("CARGO_BIN_EXE_onetwo")).args(["control", "--print-config"]).output();
     let printed = String::from_utf8(printed.unwrap().stdout).unwrap();
 
-    let program = Program::start(&["play", "--duration", "600", "--seed", "2", "--listen", "127.0.0.1:0"]);
+    let program = Program::play(&["--seed", "2"]);
     let mut browser = Browser::start().unwrap();
     let mut tab = browser.open(&program.url("?theme=light&tab=tune"), 1400, 900).unwrap();
     tab.wait("document.querySelectorAll('#tab-tune input').length > 10").unwrap();

@@ -37,7 +37,6 @@ pub(super) fn situate(game: &mut Game<'_>, library_handle: Option<&LibraryHandle
 
 /// Teams and robots of the match.
 pub(super) struct Sides<'a> {
-    /// The field's dimensions.
     pub(super) field: &'a FieldSpec,
     /// The goal that blue defends.
     pub(super) blue_goal: GoalEnd,

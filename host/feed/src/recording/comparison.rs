@@ -55,7 +55,6 @@ struct OrderCounts {
     ticks_different: u64,
 }
 
-/// Numbers of decisions on cases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 struct DecisionCounts {
     a: usize,
@@ -90,7 +89,6 @@ pub struct Report {
     ticks: u64,
     records: Records,
     orders: BTreeMap<&'static str, OrderCounts>,
-    /// Ticks at which a position differs.
     positions_different: u64,
     decisions: DecisionCounts,
     settings: Vec<Setting>,

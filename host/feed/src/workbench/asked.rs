@@ -121,7 +121,6 @@ impl Asked {
     }
 }
 
-/// Tries of a skill that are to be played.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TriesPlan {
@@ -132,7 +131,6 @@ pub(super) struct TriesPlan {
     pub(super) seed: u64,
 }
 
-/// Tries of a moment that are to be played.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PlayOnPlan {

@@ -50,7 +50,6 @@ struct Course {
 }
 
 impl Rehearsal {
-    /// Begins with a library that holds the case.
     pub(super) fn begin(library: Library, order: RehearsalOrder) -> Result<Arc<Self>, String> {
         let authored = library.names.iter().position(|name| *name == order.name);
         let authored = authored.ok_or("the library does not hold the case")?;
@@ -156,7 +155,6 @@ fn samples(attempts: &[Attempt]) -> Vec<Value> {
     chosen.into_iter().map(|number| json!({ "number": number, "result": results[number] })).collect()
 }
 
-/// Course of an attempt.
 fn result_of(attempt: &Attempt) -> String {
     match (&attempt.retrieved, attempt.end) {
         (Retrieved::Own, _) if attempt.completed() => {

@@ -49,7 +49,6 @@ fn dot(measure: Measure, Entry { row, ours }: Entry<'_>) -> Option<Dot> {
     })
 }
 
-/// Title and unit of a panel.
 const fn title_and_unit(measure: Measure, table: u8) -> (&'static str, &'static str) {
     match (measure, table) {
         (Measure::Time, 5) => ("Time of trials that did not run out of it", "s"),

@@ -129,11 +129,6 @@ impl PassAhead {
         Self { began: now, passer: None, receiver: None, shot: None }
     }
 
-    /// When the passer started, if it has.
-    pub fn passer_started(&self) -> Option<Instant> {
-        self.passer
-    }
-
     /// When the receiver started, if it has.
     pub fn receiver_started(&self) -> Option<Instant> {
         self.receiver

@@ -11,7 +11,7 @@
 //! Division B's goal is wide (1 m): from far away not even three standing bodies cover all of it. The keeper
 //! then comes out as far as it may, and [`Cover::uncovered`] is the angle left to its reaction.
 
-use geometry::{Angle, Attack, Point, Vector};
+use geometry::{Attack, Point, Vector};
 
 use super::super::view::View;
 use super::ThreatSettings;
@@ -254,11 +254,6 @@ impl Cover {
     /// The state for hysteresis.
     pub fn remember(&self) -> Before {
         Before { case: self.case, upper_post: self.upper_post }
-    }
-
-    /// The direction of the bisector.
-    pub fn bisector(&self) -> Angle {
-        self.opening.middle
     }
 }
 

@@ -102,11 +102,6 @@ impl Edge {
         from + along * outside
     }
 
-    /// The edge from end to end, for figures.
-    pub fn outline(&self, points: usize) -> impl Iterator<Item = Point<Attack>> {
-        (0..points).map(move |i| self.point(self.length() * i as f32 / (points - 1) as f32))
-    }
-
     /// A place from the centre of the corner on its side: (ahead of it, beside it).
     fn corner(&self, place: Point<Attack>) -> (f32, f32) {
         (place.x() - self.goal.x() - self.ahead, place.y().abs() - self.beside)
@@ -126,7 +121,8 @@ mod tests {
         for league in LEAGUES {
             let field = league.field();
             let edge = Edge::of(&field, 0.13);
-            for (i, point) in edge.outline(301).enumerate() {
+            for i in 0..=300_u16 {
+                let point = edge.point(edge.length() * f32::from(i) / 300.0);
                 let place = Point::<Field>::new(point.x(), point.y());
                 // At the goal line itself the rules' area continues behind it, and boxes' corners are
                 // measured as corners.

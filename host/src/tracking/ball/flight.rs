@@ -181,7 +181,6 @@ impl Flight {
         ((self.climb * t - 0.5 * GRAVITY_M_S2 * t * t).max(0.0), self.climb - GRAVITY_M_S2 * t)
     }
 
-    /// The point below it on the ground.
     pub(super) fn position(&self, at: Captured) -> Point<Field> {
         self.from + self.velocity * seconds(at - self.at)
     }

@@ -63,7 +63,6 @@ const PLACES_MAX: usize = 4;
 pub(super) struct Gone {
     seen: Captured,
     pub(super) place: Point<Field>,
-    /// The robot that covers it.
     cover: Option<Who>,
     /// Until when ours may come back, though another blob was made the ball meanwhile.
     replaced_until: Option<Captured>,

@@ -61,7 +61,6 @@ pub(super) enum Air {
     Hopping(Flight),
 }
 
-/// The last kick of the ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kicked {
     pub(super) by: Option<Who>,

@@ -50,7 +50,6 @@ pub struct BallCounts {
     pub bounces: u64,
 }
 
-/// Tracks of all balls.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Balls {
     tracks: [Option<Track>; TRACKS_MAX],

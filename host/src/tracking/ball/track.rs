@@ -65,11 +65,9 @@ pub(super) struct Turn {
     pub(super) gap: f32,
 }
 
-/// Track of one ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Track {
     pub(super) plane: Plane,
-    /// Time of the state.
     pub(super) at: Captured,
     pub(super) seen: Captured,
     /// Time of the last detection that was no outlier.
@@ -141,7 +139,6 @@ impl Track {
         (self.at, self.plane, self.strange) = (at, plane, None);
     }
 
-    /// Records that it was seen.
     pub(super) fn note(&mut self, frame: &Frame, seen: &BallSeen) {
         let at = frame.at;
         self.seen = self.seen.max(at);

@@ -126,27 +126,23 @@ pub struct Change {
     pub change: Option<ChangeOf>,
 }
 
-/// What changes.
-#[derive(Clone, PartialEq, Oneof)]
-pub enum ChangeOf {
-    /// The command in force.
-    #[prost(message, tag = "2")]
-    NewCommand(NewCommand),
-    /// The stage of the match.
-    #[prost(message, tag = "3")]
-    ChangeStage(ChangeStage),
-    /// The events.
-    #[prost(message, tag = "8")]
-    AddGameEvent(AddGameEvent),
-    /// Settings of the match.
-    #[prost(message, tag = "12")]
-    UpdateConfig(UpdateConfig),
-    /// State of a team.
-    #[prost(message, tag = "13")]
-    UpdateTeamState(UpdateTeamState),
-    /// The text for all.
-    #[prost(message, tag = "20")]
-    SetStatusMessage(SetStatusMessage),
+one_of! {
+    /// What changes.
+    #[derive(Clone, PartialEq, Oneof)]
+    pub enum ChangeOf {
+        /// The command in force.
+        NewCommand(NewCommand) [message] = 2;
+        /// The stage of the match.
+        ChangeStage(ChangeStage) [message] = 3;
+        /// The events.
+        AddGameEvent(AddGameEvent) [message] = 8;
+        /// Settings of the match.
+        UpdateConfig(UpdateConfig) [message] = 12;
+        /// State of a team.
+        UpdateTeamState(UpdateTeamState) [message] = 13;
+        /// The text for all.
+        SetStatusMessage(SetStatusMessage) [message] = 20;
+    }
 }
 
 /// What the engine does with a reported event.

@@ -82,21 +82,19 @@ pub struct TeamToController {
     pub msg: Option<TeamRequest>,
 }
 
-/// Requests of a team.
-#[derive(Clone, PartialEq, Oneof)]
-pub enum TeamRequest {
-    /// Make this robot the keeper.
-    #[prost(int32, tag = "2")]
-    DesiredKeeper(i32),
-    /// Stop or continue after a foul against us, [`AdvantageChoice`].
-    #[prost(enumeration = "AdvantageChoice", tag = "3")]
-    AdvantageChoice(i32),
-    /// Request, or withdraw, a substitution.
-    #[prost(bool, tag = "4")]
-    SubstituteBot(bool),
-    /// Requests a reply to prove that the peer is alive.
-    #[prost(bool, tag = "5")]
-    Ping(bool),
+one_of! {
+    /// Requests of a team.
+    #[derive(Clone, PartialEq, Oneof)]
+    pub enum TeamRequest {
+        /// Make this robot the keeper.
+        DesiredKeeper(i32) [int32] = 2;
+        /// Stop or continue after a foul against us, [`AdvantageChoice`].
+        AdvantageChoice(i32) [enumeration = "AdvantageChoice"] = 3;
+        /// Request, or withdraw, a substitution.
+        SubstituteBot(bool) [bool] = 4;
+        /// Requests a reply to prove that the peer is alive.
+        Ping(bool) [bool] = 5;
+    }
 }
 
 messages! {

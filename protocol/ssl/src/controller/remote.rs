@@ -27,24 +27,21 @@ pub struct RemoteToController {
     pub msg: Option<RemoteMessage>,
 }
 
-/// What a remote control asks for.
-#[derive(Clone, PartialEq, Oneof)]
-pub enum RemoteMessage {
-    /// What takes no value, [`RemoteOnce`].
-    #[prost(enumeration = "RemoteOnce", tag = "2")]
-    Once(i32),
-    /// Make this robot the keeper.
-    #[prost(int32, tag = "3")]
-    DesiredKeeper(i32),
-    /// Request, or withdraw, a substitution at the next opportunity.
-    #[prost(bool, tag = "4")]
-    Substitution(bool),
-    /// Request, or withdraw, a timeout at the next stoppage.
-    #[prost(bool, tag = "5")]
-    Timeout(bool),
-    /// Request, or withdraw, an emergency stop.
-    #[prost(bool, tag = "6")]
-    EmergencyStop(bool),
+one_of! {
+    /// What a remote control asks for.
+    #[derive(Clone, PartialEq, Oneof)]
+    pub enum RemoteMessage {
+        /// What takes no value, [`RemoteOnce`].
+        Once(i32) [enumeration = "RemoteOnce"] = 2;
+        /// Make this robot the keeper.
+        DesiredKeeper(i32) [int32] = 3;
+        /// Request, or withdraw, a substitution at the next opportunity.
+        Substitution(bool) [bool] = 4;
+        /// Request, or withdraw, a timeout at the next stoppage.
+        Timeout(bool) [bool] = 5;
+        /// Request, or withdraw, an emergency stop.
+        EmergencyStop(bool) [bool] = 6;
+    }
 }
 
 /// Requests that take no value.

@@ -36,150 +36,66 @@ pub struct GameEvent {
     pub event: Option<Event>,
 }
 
-/// Kind of event; deprecated ones are still in old log files.
-#[derive(Clone, PartialEq, Oneof)]
-pub enum Event {
-    /// Both teams were ready for the restart (deprecated).
-    #[prost(message, tag = "1")]
-    Prepared(Prepared),
-    /// No team got the ball moving.
-    #[prost(message, tag = "2")]
-    NoProgressInGame(NoProgressInGame),
-    /// A team failed to place the ball.
-    #[prost(message, tag = "3")]
-    PlacementFailed(PlacementFailed),
-    /// A team placed the ball.
-    #[prost(message, tag = "5")]
-    PlacementSucceeded(PlacementSucceeded),
-    /// The ball left over a touch line.
-    #[prost(message, tag = "6")]
-    BallLeftFieldTouchLine(BallLeftField),
-    /// The ball left over a goal line.
-    #[prost(message, tag = "7")]
-    BallLeftFieldGoalLine(BallLeftField),
-    /// A goal was scored.
-    #[prost(message, tag = "8")]
-    Goal(Goal),
-    /// A goal straight from an indirect free kick (deprecated).
-    #[prost(message, tag = "9")]
-    IndirectGoal(IndirectGoal),
-    /// A goal by a ball too high (deprecated).
-    #[prost(message, tag = "10")]
-    ChippedGoal(ChippedGoal),
-    /// A kick from the own half over the opponent's goal line (division B).
-    #[prost(message, tag = "11")]
-    AimlessKick(AimlessKick),
-    /// The kick was not taken in time (deprecated).
-    #[prost(message, tag = "12")]
-    KickTimeout(KickTimeout),
-    /// The keeper held the ball too long.
-    #[prost(message, tag = "13")]
-    KeeperHeldBall(KeeperHeldBall),
-    /// The kicker touched the ball twice.
-    #[prost(message, tag = "14")]
-    AttackerDoubleTouchedBall(AttackerDoubleTouchedBall),
-    /// An attacker touched the ball in the opponent's defence area.
-    #[prost(message, tag = "15")]
-    AttackerTouchedBallInDefenseArea(AttackerTouchedBallInDefenseArea),
-    /// An attacker touched an opponent in its defence area (deprecated).
-    #[prost(message, tag = "16")]
-    AttackerTouchedOpponentInDefenseArea(AttackerTouchedOpponentInDefenseArea),
-    /// A robot dribbled more than a metre.
-    #[prost(message, tag = "17")]
-    BotDribbledBallTooFar(BotDribbledBallTooFar),
-    /// A ball faster than 6.5 m/s.
-    #[prost(message, tag = "18")]
-    BotKickedBallTooFast(BotKickedBallTooFast),
-    /// An attacker was within 0.2 m of the opponent's defence area at a restart.
-    #[prost(message, tag = "19")]
-    AttackerTooCloseToDefenseArea(AttackerTooCloseToDefenseArea),
-    /// A robot interfered with the placement.
-    #[prost(message, tag = "20")]
-    BotInterferedPlacement(BotInterferedPlacement),
-    /// Two robots crashed, both at fault.
-    #[prost(message, tag = "21")]
-    BotCrashDrawn(BotCrashDrawn),
-    /// Two robots crashed, one at fault.
-    #[prost(message, tag = "22")]
-    BotCrashUnique(BotCrashUnique),
-    /// The same, play continued (deprecated).
-    #[prost(message, tag = "23")]
-    BotCrashUniqueSkipped(BotCrashUnique),
-    /// A robot pushed another.
-    #[prost(message, tag = "24")]
-    BotPushedBot(BotPushedBot),
-    /// The same, play continued (deprecated).
-    #[prost(message, tag = "25")]
-    BotPushedBotSkipped(BotPushedBot),
-    /// A robot held the ball so that no other robot could reach it.
-    #[prost(message, tag = "26")]
-    BotHeldBallDeliberately(BotHeldBallDeliberately),
-    /// A robot fell over.
-    #[prost(message, tag = "27")]
-    BotTippedOver(BotTippedOver),
-    /// A robot was faster than 1.5 m/s in STOP.
-    #[prost(message, tag = "28")]
-    BotTooFastInStop(BotTooFastInStop),
-    /// An opponent was within 0.5 m of the ball at a free kick.
-    #[prost(message, tag = "29")]
-    DefenderTooCloseToKickPoint(DefenderTooCloseToKickPoint),
-    /// A defender touched the ball while partly in its defence area (deprecated).
-    #[prost(message, tag = "30")]
-    DefenderInDefenseAreaPartially(DefenderInDefenseAreaPartially),
-    /// A defender touched the ball while entirely in its defence area.
-    #[prost(message, tag = "31")]
-    DefenderInDefenseArea(DefenderInDefenseArea),
-    /// A team got several yellow cards.
-    #[prost(message, tag = "32")]
-    MultipleCards(MultipleCards),
-    /// A team failed to place several times (deprecated).
-    #[prost(message, tag = "33")]
-    MultiplePlacementFailures(MultiplePlacementFailures),
-    /// A team committed several fouls: a yellow card.
-    #[prost(message, tag = "34")]
-    MultipleFouls(MultipleFouls),
-    /// A human referee saw minor unsporting behaviour.
-    #[prost(message, tag = "35")]
-    UnsportingBehaviorMinor(UnsportingBehaviorMinor),
-    /// A human referee saw major unsporting behaviour.
-    #[prost(message, tag = "36")]
-    UnsportingBehaviorMajor(UnsportingBehaviorMajor),
-    /// A team requests to substitute a robot.
-    #[prost(message, tag = "37")]
-    BotSubstitution(BotSubstitution),
-    /// A team had too many robots on the field.
-    #[prost(message, tag = "38")]
-    TooManyRobots(TooManyRobots),
-    /// A possible goal: the human referee decides.
-    #[prost(message, tag = "39")]
-    PossibleGoal(Goal),
-    /// The same as above, play continued (deprecated).
-    #[prost(message, tag = "42")]
-    AttackerTouchedOpponentInDefenseAreaSkipped(AttackerTouchedOpponentInDefenseArea),
-    /// A ball flew over the boundary's wall.
-    #[prost(message, tag = "43")]
-    BoundaryCrossing(BoundaryCrossing),
-    /// The ball was in the goal, but it does not count.
-    #[prost(message, tag = "44")]
-    InvalidGoal(Goal),
-    /// The penalty kick brought no goal.
-    #[prost(message, tag = "45")]
-    PenaltyKickFailed(PenaltyKickFailed),
-    /// A team challenges a decision.
-    #[prost(message, tag = "46")]
-    ChallengeFlag(ChallengeFlag),
-    /// A team stopped the game in an emergency.
-    #[prost(message, tag = "47")]
-    EmergencyStop(EmergencyStop),
-    /// The challenge was decided.
-    #[prost(message, tag = "48")]
-    ChallengeFlagHandled(ChallengeFlagHandled),
-    /// A robot lost parts.
-    #[prost(message, tag = "51")]
-    BotDroppedParts(BotDroppedParts),
-    /// A team substituted more often than is free.
-    #[prost(message, tag = "52")]
-    ExcessiveBotSubstitution(ExcessiveBotSubstitution),
+one_of! {
+    /// Kind of event; deprecated ones are still in old log files.
+    #[expect(missing_docs, reason = "most are as their message says")]
+    #[derive(Clone, PartialEq, Oneof)]
+    pub enum Event {
+        Prepared(Prepared) [message] = 1;
+        NoProgressInGame(NoProgressInGame) [message] = 2;
+        PlacementFailed(PlacementFailed) [message] = 3;
+        PlacementSucceeded(PlacementSucceeded) [message] = 5;
+        /// The ball left over a touch line.
+        BallLeftFieldTouchLine(BallLeftField) [message] = 6;
+        /// The ball left over a goal line.
+        BallLeftFieldGoalLine(BallLeftField) [message] = 7;
+        Goal(Goal) [message] = 8;
+        IndirectGoal(IndirectGoal) [message] = 9;
+        ChippedGoal(ChippedGoal) [message] = 10;
+        AimlessKick(AimlessKick) [message] = 11;
+        KickTimeout(KickTimeout) [message] = 12;
+        KeeperHeldBall(KeeperHeldBall) [message] = 13;
+        AttackerDoubleTouchedBall(AttackerDoubleTouchedBall) [message] = 14;
+        AttackerTouchedBallInDefenseArea(AttackerTouchedBallInDefenseArea) [message] = 15;
+        AttackerTouchedOpponentInDefenseArea(AttackerTouchedOpponentInDefenseArea) [message] = 16;
+        BotDribbledBallTooFar(BotDribbledBallTooFar) [message] = 17;
+        BotKickedBallTooFast(BotKickedBallTooFast) [message] = 18;
+        AttackerTooCloseToDefenseArea(AttackerTooCloseToDefenseArea) [message] = 19;
+        BotInterferedPlacement(BotInterferedPlacement) [message] = 20;
+        BotCrashDrawn(BotCrashDrawn) [message] = 21;
+        BotCrashUnique(BotCrashUnique) [message] = 22;
+        /// The same, play continued (deprecated).
+        BotCrashUniqueSkipped(BotCrashUnique) [message] = 23;
+        BotPushedBot(BotPushedBot) [message] = 24;
+        /// The same, play continued (deprecated).
+        BotPushedBotSkipped(BotPushedBot) [message] = 25;
+        BotHeldBallDeliberately(BotHeldBallDeliberately) [message] = 26;
+        BotTippedOver(BotTippedOver) [message] = 27;
+        BotTooFastInStop(BotTooFastInStop) [message] = 28;
+        DefenderTooCloseToKickPoint(DefenderTooCloseToKickPoint) [message] = 29;
+        DefenderInDefenseAreaPartially(DefenderInDefenseAreaPartially) [message] = 30;
+        DefenderInDefenseArea(DefenderInDefenseArea) [message] = 31;
+        MultipleCards(MultipleCards) [message] = 32;
+        MultiplePlacementFailures(MultiplePlacementFailures) [message] = 33;
+        MultipleFouls(MultipleFouls) [message] = 34;
+        UnsportingBehaviorMinor(UnsportingBehaviorMinor) [message] = 35;
+        UnsportingBehaviorMajor(UnsportingBehaviorMajor) [message] = 36;
+        BotSubstitution(BotSubstitution) [message] = 37;
+        TooManyRobots(TooManyRobots) [message] = 38;
+        /// A possible goal: the human referee decides.
+        PossibleGoal(Goal) [message] = 39;
+        /// The same as above, play continued (deprecated).
+        AttackerTouchedOpponentInDefenseAreaSkipped(AttackerTouchedOpponentInDefenseArea) [message] = 42;
+        BoundaryCrossing(BoundaryCrossing) [message] = 43;
+        /// The ball was in the goal, but it does not count.
+        InvalidGoal(Goal) [message] = 44;
+        PenaltyKickFailed(PenaltyKickFailed) [message] = 45;
+        ChallengeFlag(ChallengeFlag) [message] = 46;
+        EmergencyStop(EmergencyStop) [message] = 47;
+        ChallengeFlagHandled(ChallengeFlagHandled) [message] = 48;
+        BotDroppedParts(BotDroppedParts) [message] = 51;
+        ExcessiveBotSubstitution(ExcessiveBotSubstitution) [message] = 52;
+    }
 }
 
 /// Kinds of game events, by the league's numbers.

@@ -5,28 +5,40 @@ use prost::Message;
 use super::GameEvent;
 use crate::common::Team;
 
-messages! {
+events! {
     /// A team got several yellow cards.
-    #[derive(Clone, Copy, PartialEq, Message)]
-    pub struct MultipleCards {
-        /// Team that the event concerns, [`Team`].
-        by_team: i32 [enumeration = "Team", required] = 1;
+    team MultipleCards {}
+
+    /// A team failed to place several times (deprecated).
+    team MultiplePlacementFailures {}
+
+    /// A team wants to substitute a robot.
+    team BotSubstitution {}
+
+    /// A team substituted more often than is free.
+    team ExcessiveBotSubstitution {}
+
+    /// A team challenges a decision.
+    team ChallengeFlag {}
+
+    /// A challenge was decided.
+    team ChallengeFlagHandled {
+        /// Was the challenge right?
+        accepted: bool [bool, required] = 2;
     }
 
-    /// A team committed several fouls.
+    /// A team stopped the game in an emergency.
+    team EmergencyStop {}
+}
+
+messages! {
+    /// A team committed several fouls: a yellow card.
     #[derive(Clone, PartialEq, Message)]
     pub struct MultipleFouls {
         /// Team that the event concerns, [`Team`].
         by_team: i32 [enumeration = "Team", required] = 1;
         /// The fouls that were counted together.
         caused_game_events: Vec<GameEvent> [message, repeated] = 2;
-    }
-
-    /// A team failed to place several times (deprecated).
-    #[derive(Clone, Copy, PartialEq, Message)]
-    pub struct MultiplePlacementFailures {
-        /// Team that the event concerns, [`Team`].
-        by_team: i32 [enumeration = "Team", required] = 1;
     }
 
     /// A human saw minor unsporting behaviour.
@@ -45,42 +57,5 @@ messages! {
         by_team: i32 [enumeration = "Team", required] = 1;
         /// Observation of the referees, as text.
         reason: String [string, required] = 2;
-    }
-
-    /// A team wants to substitute a robot.
-    #[derive(Clone, Copy, PartialEq, Message)]
-    pub struct BotSubstitution {
-        /// Team that the event concerns, [`Team`].
-        by_team: i32 [enumeration = "Team", required] = 1;
-    }
-
-    /// A team substituted more often than is free.
-    #[derive(Clone, Copy, PartialEq, Message)]
-    pub struct ExcessiveBotSubstitution {
-        /// Team that the event concerns, [`Team`].
-        by_team: i32 [enumeration = "Team", required] = 1;
-    }
-
-    /// A team challenges a decision.
-    #[derive(Clone, Copy, PartialEq, Message)]
-    pub struct ChallengeFlag {
-        /// Team that the event concerns, [`Team`].
-        by_team: i32 [enumeration = "Team", required] = 1;
-    }
-
-    /// A challenge was decided.
-    #[derive(Clone, Copy, PartialEq, Message)]
-    pub struct ChallengeFlagHandled {
-        /// Team that the event concerns, [`Team`].
-        by_team: i32 [enumeration = "Team", required] = 1;
-        /// Was the challenge right?
-        accepted: bool [bool, required] = 2;
-    }
-
-    /// A team stopped the game in an emergency.
-    #[derive(Clone, Copy, PartialEq, Message)]
-    pub struct EmergencyStop {
-        /// Team that the event concerns, [`Team`].
-        by_team: i32 [enumeration = "Team", required] = 1;
     }
 }

@@ -38,18 +38,17 @@ pub struct RobotMoveCommand {
     pub command: Option<MoveCommand>,
 }
 
-/// Motion command of a robot.
-#[derive(Clone, Copy, PartialEq, Oneof)]
-pub enum MoveCommand {
-    /// Speed of each wheel.
-    #[prost(message, tag = "1")]
-    WheelVelocity(MoveWheelVelocity),
-    /// Velocity in the robot's frame.
-    #[prost(message, tag = "2")]
-    LocalVelocity(MoveLocalVelocity),
-    /// Velocity in the field frame.
-    #[prost(message, tag = "3")]
-    GlobalVelocity(MoveGlobalVelocity),
+one_of! {
+    /// Motion command of a robot.
+    #[derive(Clone, Copy, PartialEq, Oneof)]
+    pub enum MoveCommand {
+        /// Speed of each wheel.
+        WheelVelocity(MoveWheelVelocity) [message] = 1;
+        /// Velocity in the robot's frame.
+        LocalVelocity(MoveLocalVelocity) [message] = 2;
+        /// Velocity in the field frame.
+        GlobalVelocity(MoveGlobalVelocity) [message] = 3;
+    }
 }
 
 messages! {

@@ -5,7 +5,6 @@ use serde_json::{Value, json};
 
 use super::progress::{Event, Summary};
 
-/// Format of what is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     /// A line for each check, two for one that failed.

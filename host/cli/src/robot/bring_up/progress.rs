@@ -84,7 +84,6 @@ impl Progress {
         }
     }
 
-    /// Takes a packet from the air.
     pub(super) fn take(&mut self, packet: &[u8]) -> Taken {
         match self.read(packet) {
             Ok(taken) => taken,

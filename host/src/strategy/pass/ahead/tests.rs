@@ -73,7 +73,7 @@ fn simulate(receiver: f32, passer: f32, ball: f32) -> (PassAhead, f32) {
         let left = |whole: f32, started: Option<Instant>| {
             (whole - started.map_or(0.0, |at| now.since(at).as_secs_f32())).max(0.0)
         };
-        let passer = left(passer, ahead.passer_started());
+        let passer = left(passer, ahead.passer);
         let times = Times {
             receiver: left(receiver, ahead.receiver_started()),
             passer,
@@ -121,7 +121,7 @@ fn everyone_starts_when_the_network_says() {
         let (ahead, _) = simulate(receiver, passer, ball);
         let near =
             |is: f64, latest: f64, early: f64| is <= latest + 2.0 * tick && is >= latest - early - tick;
-        assert!(near(seconds(ahead.passer_started()), latest[PASSER_STARTS], 0.0), "{ahead:?} {latest:?}");
+        assert!(near(seconds(ahead.passer), latest[PASSER_STARTS], 0.0), "{ahead:?} {latest:?}");
         let forgiven = f64::from(RECEIVER_LATE_MAX_S);
         assert!(near(seconds(ahead.shot()), latest[KICK], forgiven), "{ahead:?} {latest:?}");
         // A receiver that has not started when the ball leaves would start later in the network.

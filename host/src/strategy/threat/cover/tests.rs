@@ -3,7 +3,7 @@
 use super::super::super::view::tests::view;
 use super::super::angle::BODY;
 use super::*;
-use geometry::Segment;
+use geometry::{Angle, Segment};
 use rules::League;
 
 fn at(league: League, threat: (f32, f32), available: usize) -> (View, Cover) {
