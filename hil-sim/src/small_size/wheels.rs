@@ -1,11 +1,13 @@
-//! `wheels`: kinematics of four wheels. m/s at the rim, rad/s, body frame.
+//! `wheels`: kinematics of three or four wheels. m/s at the rim, rad/s, body frame.
 //!
-//! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. Four
-//! rims and three degrees of freedom: the body follows the least squares. Written independently of `motion`'s
+//! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. With four
+//! rims and three degrees of freedom the body follows the least squares. Written independently of `motion`'s
 //! kinematics, which robots use.
 
 use geometry::Angle;
 use serde::{Deserialize, Serialize};
+
+use super::parameters::BodyParameters;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Wheels {
@@ -17,13 +19,17 @@ pub(super) struct Wheels {
 }
 
 impl Wheels {
-    /// Wheels at these angles, degrees from ahead, `distance` m from the centre; `None` where they cannot
-    /// drive in every direction.
-    pub(super) fn new(wheels_deg: [f32; 4], distance: f32) -> Option<Self> {
-        let rows = wheels_deg.map(|degrees| {
-            let (s, c) = Angle::degrees(degrees).sin_cos();
-            [-s, c, distance]
-        });
+    /// The wheels of a body; `None` where they cannot drive in every direction. Those of `dead` hold nothing
+    /// and roll as the field does.
+    pub(super) fn new(body: &BodyParameters, dead: [bool; 4]) -> Option<Self> {
+        let distance = body.wheel_distance;
+        let mut rows = [[0.0; 3]; 4];
+        for (wheel, row) in rows.iter_mut().enumerate().take(usize::from(body.wheel_count)) {
+            let (s, c) = Angle::degrees(body.wheels_deg[wheel]).sin_cos();
+            if !dead[wheel] {
+                *row = [-s, c, distance * body.wheel_levers[wheel]];
+            }
+        }
         // Gauss–Jordan on (JᵀJ | Jᵀ); once per body.
         let mut system = [[0.0_f32; 7]; 3];
         for (i, line) in system.iter_mut().enumerate() {
@@ -88,7 +94,7 @@ mod tests {
 
     fn wheels() -> Wheels {
         let body = Parameters::of(League::DivisionB).unwrap().robot;
-        Wheels::new(body.wheels_deg, body.wheel_distance).unwrap()
+        Wheels::new(&body, [false; 4]).unwrap()
     }
 
     #[test]
@@ -114,6 +120,10 @@ mod tests {
         for (value, by) in wheels.motion(wheels.rims(wanted)).into_iter().zip(wanted) {
             assert!((value - by).abs() < 1e-5);
         }
-        assert!(Wheels::new([90.0, -90.0, 90.0, -90.0], 0.08).is_none());
+        let body = Parameters::of(League::DivisionB).unwrap().robot;
+        let parallel = BodyParameters { wheels_deg: [90.0, -90.0, 90.0, -90.0], ..body };
+        assert!(Wheels::new(&parallel, [false; 4]).is_none());
+        assert!(Wheels::new(&body, [true, false, false, false]).is_some());
+        assert!(Wheels::new(&body, [true, true, false, false]).is_none());
     }
 }
