@@ -78,7 +78,7 @@ impl Check {
 }
 
 /// Name of a wheel by its number, 0 to 3.
-fn wheel_name(wheel: u8) -> &'static str {
+pub(crate) fn wheel_name(wheel: u8) -> &'static str {
     ["front right", "back right", "back left", "front left"].get(usize::from(wheel)).copied().unwrap_or("no")
 }
 

@@ -303,8 +303,11 @@ fn absent(kind: Kind) -> Option<Value> {
 
 /// Three or four numbers within a range.
 fn each(value: &DeValue<'_>, low: f32, high: f32) -> Option<Vec<f32>> {
-    let numbers: Option<Vec<f32>> =
-        value.as_array()?.iter().map(|node| number(node.get_ref()).filter(|x| (low..=high).contains(x))).collect();
+    let numbers: Option<Vec<f32>> = value
+        .as_array()?
+        .iter()
+        .map(|node| number(node.get_ref()).filter(|x| (low..=high).contains(x)))
+        .collect();
     numbers.filter(|numbers| (3..=4).contains(&numbers.len()))
 }
 

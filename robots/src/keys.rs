@@ -256,7 +256,9 @@ impl Key {
                 let absent = absent.map_or(String::new(), |absent| format!("; {absent} where it is absent"));
                 format!("{low} to {high}{unit}, or a list with one for each wheel{absent}")
             }
-            Kind::Outputs => "different numbers from 1 to 4, one for each wheel; absent: 1, 2, 3, 4".to_owned(),
+            Kind::Outputs => {
+                "different numbers from 1 to 4, one for each wheel; absent: 1, 2, 3, 4".to_owned()
+            }
             Kind::Pulses => "2 to 16 pairs [m/s, µs], both rising, at most 15 m/s and 6000 µs".to_owned(),
             Kind::Word(words) => words.join(", "),
             Kind::Name => "1 to 32 letters, digits, - and _".to_owned(),

@@ -122,6 +122,17 @@ impl Omni {
         Twist { linear: Vector::new(x, y), angular }
     }
 
+    /// Force ahead and to the left, and torque, of wheels that each push with this force along their roll.
+    pub fn forces(&self, pushes: Rims) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        for (row, push) in self.rows.iter().zip(pushes) {
+            for (sum, part) in sum.iter_mut().zip(row) {
+                *sum += part * push;
+            }
+        }
+        sum
+    }
+
     /// The fastest wheel's part in these rim speeds that no motion of the body explains: above some cm/s a
     /// wheel slips, m/s.
     pub fn slip(&self, rims: Rims) -> f32 {

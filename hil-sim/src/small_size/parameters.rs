@@ -298,7 +298,7 @@ impl BodyParameters {
             within("robot.wheel_levers", lever, 0.0, 1.0)?;
         }
         within("robot.wheel_count", f32::from(self.wheel_count), 3.0, 4.0)?;
-        let solved = Wheels::new(self, [false; 4]).is_some();
+        let solved = Wheels::new(self).is_some();
         within("robot.wheels_deg (directions the wheels can drive in)", f32::from(u8::from(solved)), 1.0, 1.0)
     }
 }

@@ -19,16 +19,13 @@ pub(super) struct Wheels {
 }
 
 impl Wheels {
-    /// The wheels of a body; `None` where they cannot drive in every direction. Those of `dead` hold nothing
-    /// and roll as the field does.
-    pub(super) fn new(body: &BodyParameters, dead: [bool; 4]) -> Option<Self> {
+    /// The wheels of a body; `None` where they cannot drive in every direction.
+    pub(super) fn new(body: &BodyParameters) -> Option<Self> {
         let distance = body.wheel_distance;
         let mut rows = [[0.0; 3]; 4];
         for (wheel, row) in rows.iter_mut().enumerate().take(usize::from(body.wheel_count)) {
             let (s, c) = Angle::degrees(body.wheels_deg[wheel]).sin_cos();
-            if !dead[wheel] {
-                *row = [-s, c, distance * body.wheel_levers[wheel]];
-            }
+            *row = [-s, c, distance * body.wheel_levers[wheel]];
         }
         // Gauss–Jordan on (JᵀJ | Jᵀ); once per body.
         let mut system = [[0.0_f32; 7]; 3];
@@ -94,7 +91,7 @@ mod tests {
 
     fn wheels() -> Wheels {
         let body = Parameters::of(League::DivisionB).unwrap().robot;
-        Wheels::new(&body, [false; 4]).unwrap()
+        Wheels::new(&body).unwrap()
     }
 
     #[test]
@@ -122,8 +119,7 @@ mod tests {
         }
         let body = Parameters::of(League::DivisionB).unwrap().robot;
         let parallel = BodyParameters { wheels_deg: [90.0, -90.0, 90.0, -90.0], ..body };
-        assert!(Wheels::new(&parallel, [false; 4]).is_none());
-        assert!(Wheels::new(&body, [true, false, false, false]).is_some());
-        assert!(Wheels::new(&body, [true, true, false, false]).is_none());
+        assert!(Wheels::new(&parallel).is_none());
+        assert!(Wheels::new(&BodyParameters { wheel_count: 3, ..body }).is_some());
     }
 }
