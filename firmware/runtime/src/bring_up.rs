@@ -87,7 +87,7 @@ impl BringUp {
 
     /// One step, 1 ms after the last: takes what was measured since, and returns what to drive.
     pub fn step(&mut self, now: Instant, reading: &Reading) -> BenchStep {
-        while CHECKS.get(self.next).is_some_and(is_absent) {
+        while CHECKS.get(self.next).copied().is_some_and(is_absent) {
             self.next += 1;
         }
         let Some(check) = CHECKS.get(self.next).copied() else {
@@ -232,8 +232,8 @@ impl Default for BringUp {
 }
 
 /// Whether the check is of a wheel that this robot does not have.
-fn is_absent(check: &Check) -> bool {
-    matches!(check, Check::Wheel { wheel, .. } if *wheel >= RobotSpec::OURS.wheels.count)
+fn is_absent(check: Check) -> bool {
+    matches!(check, Check::Wheel { wheel, .. } if wheel >= RobotSpec::OURS.wheels.count)
 }
 
 /// Result of the battery's check, from the voltage divider.

@@ -42,7 +42,7 @@ impl Driver {
         let pushed = self.push_left < 50;
         chassis.push = if pushed { Vector::new(3.0, -2.0) } else { Vector::default() };
         let change = (self.wanted.linear - self.ordered.linear).clamped(0.03);
-        self.ordered.linear = self.ordered.linear + change;
+        self.ordered.linear += change;
         self.ordered.angular += (self.wanted.angular - self.ordered.angular).clamp(-0.3, 0.3);
         self.heading += chassis.twist.angular * 0.01;
         let (s, c) = Angle::new(self.heading).sin_cos();
@@ -60,7 +60,7 @@ fn fault(number: u64) -> (PartFault, Part) {
         0 | 1 => (PartFault::MotorOpen(wheel), Part::motor(wheel)),
         2 => (PartFault::EncoderDead(wheel), Part::encoder(wheel)),
         3 => (PartFault::EncoderWild(wheel), Part::encoder(wheel)),
-        _ if wheel % 2 == 0 => (PartFault::GyroscopeStuck, Part::GYROSCOPE),
+        _ if wheel.is_multiple_of(2) => (PartFault::GyroscopeStuck, Part::GYROSCOPE),
         _ => (PartFault::GyroscopeOff(2.0), Part::GYROSCOPE),
     }
 }

@@ -99,7 +99,7 @@ fn tour(planted: Option<(PartFault, Part)>, limit: f32) -> (f32, f32) {
         let turn = Angle::new(chance.between(-3.0, 3.0));
         // Around the defence area, whose front is at x = −3.5.
         let x = chance.between(-4.2, -1.5);
-        let y = chance.between(1.5, 2.6) * if number % 2 == 0 { 1.0 } else { -1.0 };
+        let y = chance.between(1.5, 2.6) * if number & 1 == 0 { 1.0 } else { -1.0 };
         let y = if number % 3 == 0 { y } else { chance.between(-1.0, 1.0) };
         let x = if y.abs() < 1.4 { x.max(-2.9) } else { x };
         let to = Pose { position: Point::new(x, y), heading: turn };
