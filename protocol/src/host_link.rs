@@ -174,9 +174,9 @@ impl HostLink {
             return Err(Refusal::Tag);
         }
         let version = VersionReport::read(frame.payload).map(|report| Opened::Version(robot, report));
-        let parts = || PartsReport::read(frame.payload).map(|report| Opened::Parts(robot, report));
+        let parts = PartsReport::read(frame.payload).map(|report| Opened::Parts(robot, report));
         let known = self.own.epoch(frame.sender) == Some(frame.epoch);
-        if let Some(report) = version.or_else(parts).filter(|_| known) {
+        if let Some(report) = version.or(parts).filter(|_| known) {
             self.own.accept(frame);
             return Ok(report);
         }

@@ -46,11 +46,16 @@ impl Part {
 impl fmt::Display for Part {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            wheel @ 0..4 => write!(f, "{} motor or its driver", crate::bring_up::wheel_name(wheel)),
-            wheel @ 4..8 => write!(f, "{} encoder", crate::bring_up::wheel_name(wheel - 4)),
+            wheel @ 0..4 => write!(f, "{} motor or its driver", wheel_name(wheel)),
+            wheel @ 4..8 => write!(f, "{} encoder", wheel_name(wheel - 4)),
             _ => f.write_str("gyroscope"),
         }
     }
+}
+
+/// Name of a wheel by its number, 0 to 3.
+pub(crate) fn wheel_name(wheel: u8) -> &'static str {
+    ["front right", "back right", "back left", "front left"].get(usize::from(wheel)).copied().unwrap_or("no")
 }
 
 /// State of a part.

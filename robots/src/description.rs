@@ -104,18 +104,22 @@ impl Description {
         if let Value::Pulses(pulses) = self.value(path) { pulses } else { &[] }
     }
 
+    /// The number of a key for one wheel; NaN where the list has none.
+    fn of_wheel(&self, path: &str, index: usize) -> f32 {
+        match self.value(path) {
+            Value::Wheels(list) => list.get(index).copied().unwrap_or(f32::NAN),
+            _ => self.number(path),
+        }
+    }
+
     /// The wheels, in their order.
     pub fn wheels(&self) -> Vec<Wheel> {
         let Value::Wheels(places) = self.value("wheels.degrees") else { return Vec::new() };
-        let of = |path: &str, index: usize| match self.value(path) {
-            Value::Wheels(list) => list.get(index).copied().unwrap_or(f32::NAN),
-            _ => self.number(path),
-        };
         let wheels = places.iter().enumerate().map(|(index, place)| Wheel {
             place: *place,
-            distance: of("wheels.distance", index),
-            skew: of("wheels.skew", index),
-            output: of("wheels.outputs", index) as u8,
+            distance: self.of_wheel("wheels.distance", index),
+            skew: self.of_wheel("wheels.skew", index),
+            output: self.of_wheel("wheels.outputs", index) as u8,
         });
         wheels.collect()
     }

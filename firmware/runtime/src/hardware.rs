@@ -21,11 +21,11 @@ use protocol::robot_io::{Health, OmniKick, SensorFrame, WHEELED_STEP};
 
 use crate::kicker::{Interlock, KickerAct};
 use crate::mailboxes::{Arrival, Mailboxes};
-use crate::parts::{Lost, Means, PartsEstimator, Rolled};
+use crate::parts::{Means, PartsEstimator, Rolled};
 use crate::ports::{Kicker, Probes, RadioReceiver, Watchdog, WheelsPort};
 use crate::progress::RobotPart;
 use crate::tasks::now;
-use crate::wheel::{CONTROL_PERIOD, Control, Motors, WHEELS};
+use crate::wheel::{CONTROL_PERIOD, Control, Lost, Motors, WHEELS};
 
 /// Signals between the tasks of this module.
 pub struct Wires {

@@ -1,5 +1,5 @@
-//! `parts`: which motor, encoder or gyroscope of a robot has failed, from what they say of each other. Sans-IO,
-//! fed every 10 ms; m/s at the rim, rad/s.
+//! `parts`: which motor, encoder or gyroscope of a robot has failed, from what they say of each other.
+//! Sans-IO, fed every 10 ms; m/s at the rim, rad/s.
 //!
 //! | part | evidence |
 //! |---|---|
@@ -12,12 +12,12 @@
 //! (`motion::omni`). No scale of mass, grip or battery enters: only proportions count.
 
 use geometry::{Body, Twist, math};
-use motion::omni::{Omni, Wheels};
+use motion::omni::Omni;
 use protocol::Instant;
 use protocol::parts::{PARTS, Part, PartState, PartsReport};
 use rules::RobotSpec;
 
-use crate::wheel::{Motors, WHEELS};
+use crate::wheel::{Lost, Motors, WHEELS, without};
 
 /// Means of the control loop's readings over some milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -51,41 +51,8 @@ impl Means {
             return None;
         }
         let Rolled { rims, efforts } = self.sums;
-        let mean = |sum: f32| sum / f32::from(MEAN_STEPS);
         (self.sums, self.count) = (Rolled::default(), 0);
         Some(Rolled { rims: rims.map(mean), efforts: efforts.map(mean) })
-    }
-}
-
-/// Parts that are no longer used, as bits of the wheels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Lost {
-    /// Motors.
-    pub motors: u8,
-    /// Encoders.
-    pub encoders: u8,
-    /// The gyroscope.
-    pub gyroscope: bool,
-}
-
-impl Lost {
-    fn add(&mut self, part: Part) {
-        match part.number() {
-            wheel @ 0..4 => self.motors |= 1 << wheel,
-            wheel @ 4..8 => self.encoders |= 1 << (wheel - 4),
-            _ => self.gyroscope = true,
-        }
-    }
-
-    /// Whether wheels are lost.
-    pub const fn is_lame(self) -> bool {
-        self.motors | self.encoders != 0
-    }
-
-    /// Whether fewer than three wheels are left, or two parts of wheels are lost: the robot stands.
-    pub const fn stops(self) -> bool {
-        let lost = (self.motors | self.encoders).count_ones();
-        lost > 1 || lost + 3 > RobotSpec::OURS.wheels.count as u32
     }
 }
 
@@ -172,6 +139,18 @@ impl PartsEstimator {
         }
         let Twist { linear, angular } = self.whole.twist(rims);
         Twist { linear, angular: gyroscope.filter(|_| !self.lost.gyroscope).unwrap_or(angular) }
+    }
+
+    fn lose(&mut self, part: Part) {
+        match part.number() {
+            wheel @ 0..4 => self.lost.motors |= 1 << wheel,
+            wheel @ 4..8 if self.lost.encoders & 1 << (wheel - 4) == 0 => {
+                self.lost.encoders |= 1 << (wheel - 4);
+                self.whole = without(usize::from(wheel - 4));
+            }
+            4..8 => {}
+            _ => self.lost.gyroscope = true,
+        }
     }
 
     /// Takes the readings of the last 10 ms.
@@ -273,21 +252,12 @@ impl PartsEstimator {
     }
 
     fn idle_motor(&self, suspects: &mut Suspects) {
-        let Efforts { squared, products, predicted } = self.efforts;
-        if squared < ACCELERATION_MIN {
+        if self.efforts.squared < CHANGE_MIN {
             return;
         }
-        let unexplained = |index: usize| {
-            let (product, predicted) = (products.get(index), predicted.get(index));
-            match (product, predicted) {
-                (Some(product), Some(predicted)) if *product > 0.0 && *predicted > 0.0 => {
-                    1.0 - product * product / (squared * predicted)
-                }
-                _ => 1.0,
-            }
-        };
-        let all = unexplained(0);
-        let motors = (0..WHEELS as u8).map(|wheel| (Part::motor(wheel), unexplained(usize::from(wheel) + 1)));
+        let all = self.efforts.unexplained(0);
+        let motors = (0..WHEELS as u8)
+            .map(|wheel| (Part::motor(wheel), self.efforts.unexplained(usize::from(wheel) + 1)));
         let [best, second] = two_least(motors);
         if all > UNEXPLAINED_MIN && best.1 < FITS_MAX * all && best.1 < NEXT_FIT_MAX * second.1 {
             suspect(suspects, best.0, 1.0 - best.1 / all);
@@ -312,13 +282,9 @@ impl PartsEstimator {
             if let Some(evidence) = evidence {
                 named = Some((part, *evidence));
             }
-            if state == PartState::Failed {
-                self.lost.add(part);
-                if let Some(wheel) = part.number().checked_sub(4).filter(|wheel| *wheel < 4) {
-                    self.whole = without(usize::from(wheel));
-                }
-            }
         }
+        let report = self.report;
+        report.in_state(PartState::Failed).for_each(|part| self.lose(part));
         if let Some((part, evidence)) = named {
             (self.report.part, self.report.evidence) = (part.number(), (evidence * 1_000.0) as u16);
         }
@@ -331,6 +297,23 @@ impl PartsEstimator {
 impl Default for PartsEstimator {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// Mean of a sum over the control steps.
+fn mean(sum: f32) -> f32 {
+    sum / f32::from(MEAN_STEPS)
+}
+
+impl Efforts {
+    /// Share of the acceleration that the efforts of all motors (0), or of all but one, leave unexplained.
+    fn unexplained(&self, index: usize) -> f32 {
+        match (self.products.get(index), self.predicted.get(index)) {
+            (Some(product), Some(predicted)) if *product > 0.0 && *predicted > 0.0 => {
+                1.0 - product * product / (self.squared * predicted)
+            }
+            _ => 1.0,
+        }
     }
 }
 
@@ -348,16 +331,6 @@ fn turning(omni: &Omni) -> [f32; WHEELS] {
     core::array::from_fn(|wheel| {
         omni.twist(core::array::from_fn(|other| if other == wheel { 1.0 } else { 0.0 })).angular
     })
-}
-
-/// Kinematics of all wheels but one; of all, where three are left that do not drive everywhere.
-#[inline(never)]
-pub(crate) fn without(wheel: usize) -> Omni {
-    let mut wheels = Wheels::default();
-    if let Some(place) = wheels.driven.get_mut(wheel) {
-        *place = false;
-    }
-    Omni::new(&wheels).unwrap_or_default()
 }
 
 /// The part with the least number, and the next.
@@ -415,7 +388,7 @@ const WINDOW_S: f32 = 0.01 * WINDOW_STEPS as f32;
 /// Share of the efforts' sums that is kept from window to window: they span 1.2 s.
 const EFFORTS_KEPT: f32 = 0.93;
 /// Sum of squared changes of speed from which efforts are compared, (m/s)²: 1 m/s² for 0.6 s.
-const ACCELERATION_MIN: f32 = 0.02;
+const CHANGE_MIN: f32 = 0.02;
 /// Radius of gyration, m: of an even disc of the hull's radius.
 const GYRATION: f32 = 0.707 * RobotSpec::OURS.hull.radius;
 /// Share of the acceleration that all motors' efforts must leave unexplained.

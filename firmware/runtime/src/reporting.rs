@@ -1,5 +1,5 @@
-//! `reporting`: a station that also reports to its host, once a second, what its robot runs, and twice a second
-//! which of its parts have failed, once one is suspected.
+//! `reporting`: a station that also reports to its host, once a second, what its robot runs, and twice a
+//! second which of its parts have failed, once one is suspected.
 
 use core::cell::Cell;
 

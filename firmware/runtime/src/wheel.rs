@@ -2,17 +2,39 @@
 //! (docs/architecture.md §2.3, §6.2). Sans-IO; m/s at the rim, duty cycle as a share of the battery's
 //! voltage.
 
-use motion::omni::Omni;
+use motion::omni::{Omni, Wheels};
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::{Duration, Instant};
 use rules::{RobotSpec, WheelSpec};
-
-use crate::parts::{Lost, without};
 
 /// Number of wheels of a robot.
 pub const WHEELS: usize = 4;
 /// Period of the control loop (docs/architecture.md §2.3).
 pub const CONTROL_PERIOD: Duration = Duration::millis(1);
+
+/// Parts that are no longer used, as bits of the wheels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Lost {
+    /// Motors.
+    pub motors: u8,
+    /// Encoders.
+    pub encoders: u8,
+    /// The gyroscope.
+    pub gyroscope: bool,
+}
+
+impl Lost {
+    /// Whether wheels are lost.
+    pub const fn is_lame(self) -> bool {
+        self.motors | self.encoders != 0
+    }
+
+    /// Whether fewer than three wheels are left, or two parts of wheels are lost: the robot stands.
+    pub const fn stops(self) -> bool {
+        let lost = (self.motors | self.encoders).count_ones();
+        lost > 1 || lost + 3 > RobotSpec::OURS.wheels.count as u32
+    }
+}
 
 /// Output of the motors until the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,8 +166,18 @@ impl Default for Control {
     }
 }
 
-/// The target speeds a step later of a robot that goes on with three wheels. All change in the same proportion:
-/// the body's motion stays on its way.
+/// Kinematics of all wheels but one; of all, where three are left that do not drive everywhere.
+#[inline(never)]
+pub(crate) fn without(wheel: usize) -> Omni {
+    let mut wheels = Wheels::default();
+    if let Some(place) = wheels.driven.get_mut(wheel) {
+        *place = false;
+    }
+    Omni::new(&wheels).unwrap_or_default()
+}
+
+/// The target speeds a step later of a robot that goes on with three wheels. All change in the same
+/// proportion: the body's motion stays on its way.
 fn limped(from: [f32; WHEELS], ordered: [f32; WHEELS]) -> [f32; WHEELS] {
     let fastest = ordered.iter().fold(LAME_RIM_MAX, |most, rim| most.max(rim.abs()));
     let to = ordered.map(|rim| rim * (LAME_RIM_MAX / fastest));
@@ -171,8 +203,8 @@ fn is_finite(wheels: &[f32; WHEELS], dribbler: f32) -> bool {
 pub const ORDERS_AGE_MAX: Duration = Duration::millis(50);
 /// Fastest rim of a robot that goes on with three wheels, m/s: it stops from there within 0.15 m.
 const LAME_RIM_MAX: f32 = 1.0;
-/// Change of its rims in a step, m/s: less than four wheels brake with, and enough for the brain's plans to hold
-/// (with half of it robots circle round their places).
+/// Change of its rims in a step, m/s: less than four wheels brake with, and enough for the brain's plans to
+/// hold (with half of it robots circle round their places).
 const LAME_STEP: f32 = 0.7 * BRAKE_PER_STEP;
 const SPEC: WheelSpec = RobotSpec::OURS.wheels;
 /// Control steps in a second.

@@ -176,8 +176,8 @@ pub struct BodyParameters {
     pub mouth: f32,
     /// kg, of the whole robot.
     pub mass: f32,
-    /// Angles of the wheels, counter-clockwise from ahead: front right, back right, back left, front left; of a
-    /// wheel that is not tangential that of the tangential one with the same direction.
+    /// Angles of the wheels, counter-clockwise from ahead: front right, back right, back left, front left; of
+    /// a wheel that is not tangential that of the tangential one with the same direction.
     pub wheels_deg: [f32; 4],
     /// m, centre to wheel.
     pub wheel_distance: f32,
@@ -281,6 +281,12 @@ impl Parameters {
 }
 
 impl BodyParameters {
+    /// Kinematics of its wheels; `None` where they cannot drive in every direction.
+    pub(super) fn wheels(&self) -> Option<Wheels> {
+        let levers = self.wheel_levers.map(|share| self.wheel_distance * share);
+        Wheels::new(self.wheels_deg, levers, self.wheel_count)
+    }
+
     /// Checks a body against the limits of the physics; specifications of the simulation protocol are checked
     /// here too.
     pub fn check(&self) -> Result<(), ParameterError> {
@@ -298,7 +304,7 @@ impl BodyParameters {
             within("robot.wheel_levers", lever, 0.0, 1.0)?;
         }
         within("robot.wheel_count", f32::from(self.wheel_count), 3.0, 4.0)?;
-        let solved = Wheels::new(self).is_some();
+        let solved = self.wheels().is_some();
         within("robot.wheels_deg (directions the wheels can drive in)", f32::from(u8::from(solved)), 1.0, 1.0)
     }
 }

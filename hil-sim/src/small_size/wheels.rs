@@ -1,13 +1,11 @@
 //! `wheels`: kinematics of three or four wheels. m/s at the rim, rad/s, body frame.
 //!
-//! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. With four
-//! rims and three degrees of freedom the body follows the least squares. Written independently of `motion`'s
+//! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. With
+//! four rims and three degrees of freedom the body follows the least squares. Written independently of `motion`'s
 //! kinematics, which robots use.
 
 use geometry::Angle;
 use serde::{Deserialize, Serialize};
-
-use super::parameters::BodyParameters;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Wheels {
@@ -19,13 +17,13 @@ pub(super) struct Wheels {
 }
 
 impl Wheels {
-    /// The wheels of a body; `None` where they cannot drive in every direction.
-    pub(super) fn new(body: &BodyParameters) -> Option<Self> {
-        let distance = body.wheel_distance;
+    /// The first `count` wheels at these angles, degrees from ahead, with these levers, m; `None` where they
+    /// cannot drive in every direction.
+    pub(super) fn new(wheels_deg: [f32; 4], levers: [f32; 4], count: u8) -> Option<Self> {
         let mut rows = [[0.0; 3]; 4];
-        for (wheel, row) in rows.iter_mut().enumerate().take(usize::from(body.wheel_count)) {
-            let (s, c) = Angle::degrees(body.wheels_deg[wheel]).sin_cos();
-            *row = [-s, c, distance * body.wheel_levers[wheel]];
+        for (wheel, row) in rows.iter_mut().enumerate().take(usize::from(count)) {
+            let (s, c) = Angle::degrees(wheels_deg[wheel]).sin_cos();
+            *row = [-s, c, levers[wheel]];
         }
         // Gauss–Jordan on (JᵀJ | Jᵀ); once per body.
         let mut system = [[0.0_f32; 7]; 3];
@@ -41,7 +39,7 @@ impl Wheels {
             system.swap(pivot, largest);
             let value = system[pivot][pivot];
             // 1e-5 of a wheel at 10 mm: rounding errors of a singular matrix stay far below.
-            if value.abs() < 1e-5 * distance {
+            if value.abs() < 1e-5 * levers.into_iter().fold(0.0, f32::max) {
                 return None;
             }
             let line = system[pivot].map(|cell| cell / value);
@@ -91,7 +89,7 @@ mod tests {
 
     fn wheels() -> Wheels {
         let body = Parameters::of(League::DivisionB).unwrap().robot;
-        Wheels::new(&body).unwrap()
+        body.wheels().unwrap()
     }
 
     #[test]
@@ -117,9 +115,8 @@ mod tests {
         for (value, by) in wheels.motion(wheels.rims(wanted)).into_iter().zip(wanted) {
             assert!((value - by).abs() < 1e-5);
         }
-        let body = Parameters::of(League::DivisionB).unwrap().robot;
-        let parallel = BodyParameters { wheels_deg: [90.0, -90.0, 90.0, -90.0], ..body };
-        assert!(Wheels::new(&parallel).is_none());
-        assert!(Wheels::new(&BodyParameters { wheel_count: 3, ..body }).is_some());
+        let levers = [0.08; 4];
+        assert!(Wheels::new([90.0, -90.0, 90.0, -90.0], levers, 4).is_none());
+        assert!(Wheels::new([-60.0, 180.0, 60.0, 0.0], levers, 3).is_some());
     }
 }
