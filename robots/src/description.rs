@@ -278,10 +278,11 @@ fn read(node: Node<'_, '_>, kind: Kind) -> Option<Value> {
         }
         Kind::Outputs => {
             let outputs = each(value, 1.0, 4.0)?;
-            let other = |(index, output): (usize, &f32)| {
-                output.fract() == 0.0 && !outputs.iter().take(index).any(|before| before == output)
-            };
-            outputs.iter().enumerate().all(other).then_some(Value::Wheels(outputs))
+            let mut seen = [false; 5];
+            let new = outputs
+                .iter()
+                .all(|output| output.fract() == 0.0 && !std::mem::replace(&mut seen[*output as usize], true));
+            new.then_some(Value::Wheels(outputs))
         }
         Kind::Pulses => pulses(value).map(Value::Pulses),
         Kind::Word(words) => {

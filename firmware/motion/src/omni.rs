@@ -2,8 +2,8 @@
 //!
 //! Order as on the league's wire: front right, back right, back left, front left. A wheel stands at the angle
 //! α from the robot's heading, counter-clockwise, at the distance R from its centre, and drives along its
-//! tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. One whose drive is turned by β from the tangent
-//! is as a tangential one at α + β with the lever R · cos β. Positive rims turn the robot
+//! tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. One whose drive is turned by β from the
+//! tangent is as a tangential one at α + β with the lever R · cos β. Positive rims turn the robot
 //! counter-clockwise.
 
 use geometry::{Angle, Body, Twist, Vector};

@@ -86,7 +86,8 @@ struct Window {
     efforts: [f32; WHEELS],
 }
 
-/// Decaying sums of products of acceleration and what the efforts of all motors, and of all but each, predict.
+/// Decaying sums of products of acceleration and what the efforts of all motors, and of all but each,
+/// predict.
 #[derive(Clone, Copy, Debug, Default)]
 struct Efforts {
     squared: f32,

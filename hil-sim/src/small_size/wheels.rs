@@ -1,8 +1,8 @@
 //! `wheels`: kinematics of three or four wheels. m/s at the rim, rad/s, body frame.
 //!
 //! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. With
-//! four rims and three degrees of freedom the body follows the least squares. Written independently of `motion`'s
-//! kinematics, which robots use.
+//! four rims and three degrees of freedom the body follows the least squares. Written independently of
+//! `motion`'s kinematics, which robots use.
 
 use geometry::Angle;
 use serde::{Deserialize, Serialize};
