@@ -266,9 +266,11 @@ impl Host {
                 known.telemetry = Some((now, telemetry));
                 InputVerdict::Robot(robot)
             }
-            Ok(radio::RadioReceived::Handshake(robot) | radio::RadioReceived::Version(robot, _)) => {
-                InputVerdict::Robot(robot)
-            }
+            Ok(
+                radio::RadioReceived::Handshake(robot)
+                | radio::RadioReceived::Version(robot, _)
+                | radio::RadioReceived::Parts(robot, _),
+            ) => InputVerdict::Robot(robot),
             Ok(radio::RadioReceived::Decision(robot, part)) => {
                 let known = &mut self.robots[robot.index()];
                 if let Some(report) = known.assembler.receive(&part) {

@@ -59,6 +59,7 @@ fn spec(of: &Description) -> String {
     let turn = |table| format!("TurnSpec {{ {} }}", fields(&n, table, &["rate", "acceleration"]));
     let slope = f64::from(of.number("kicker.chip_degrees")).to_radians().tan() as f32;
     let counts = 4.0 * of.number("wheels.encoder_lines") * of.number("wheels.encoder_gear");
+    let wheels = robots::wheel_slots(&of.wheels());
     let fields = [
         format!("name: {:?}", of.name()),
         format!("hull: HullSpec {{ {} }}", fields(&n, "body", &["radius", "front", "opening"])),
@@ -87,9 +88,14 @@ fn spec(of: &Description) -> String {
         ),
         format!("dribbler: DribblerSpec {{ {} }}", fields(&n, "dribbler", &["full_rpm"])),
         format!(
-            "wheels: WheelSpec {{ degrees: {:?}, counts_a_turn: {counts:?}_f32, {}, {} }}",
-            of.wheel_angles(),
-            fields(&n, "wheels", &["distance", "radius", "free_speed", "rim_max"]),
+            "wheels: WheelSpec {{ count: {}, degrees: {:?}, levers: {:?}, distance: {:?}_f32, outputs: {:?}, \
+             counts_a_turn: {counts:?}_f32, {}, {} }}",
+            wheels.count,
+            wheels.degrees,
+            wheels.levers,
+            wheels.distance,
+            wheels.outputs,
+            fields(&n, "wheels", &["radius", "free_speed", "rim_max"]),
             fields(&n, "motors", &["proportional", "integral"])
         ),
         format!("battery: BatterySpec {{ {} }}", fields(&n, "battery", &["low", "full"])),

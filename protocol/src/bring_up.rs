@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use crate::frame::{Frame, Key, OVERHEAD, Refusal, Sender, TeamKeys, decode, packet};
 use crate::link::Packet;
+use crate::parts::wheel_name;
 use crate::{RobotId, TeamId};
 
 /// A check of the list; as text what is checked, and what a person has to see or do.
@@ -75,11 +76,6 @@ impl Check {
             Self::Beam => "s",
         }
     }
-}
-
-/// Name of a wheel by its number, 0 to 3.
-fn wheel_name(wheel: u8) -> &'static str {
-    ["front right", "back right", "back left", "front left"].get(usize::from(wheel)).copied().unwrap_or("no")
 }
 
 const fn way(forwards: bool) -> &'static str {

@@ -15,6 +15,7 @@ use crate::frame::{
 use crate::host::{HostMessage, Telemetry, Welcome};
 use crate::host_clock::TICK_BITS;
 use crate::link::{Packet, count};
+use crate::parts::PartsReport;
 use crate::team::TeamMessage;
 use crate::version::VersionReport;
 use crate::{Instant, RobotId, TeamId};
@@ -46,6 +47,8 @@ pub enum Opened {
     Believed(RobotId, TeamMessage),
     /// What a trusted robot runs.
     Version(RobotId, VersionReport),
+    /// Which parts of a trusted robot work.
+    Parts(RobotId, PartsReport),
     /// Genuine telemetry of a robot that has not named our epoch: new, led by another host, or recorded. It
     /// may be welcomed.
     Unauthenticated(RobotId, Telemetry),
@@ -170,10 +173,12 @@ impl HostLink {
         if !frame.is_genuine(packet, self.keys.of(robot), robot) {
             return Err(Refusal::Tag);
         }
-        let version = VersionReport::read(frame.payload);
-        if let Some(report) = version.filter(|_| self.own.epoch(frame.sender) == Some(frame.epoch)) {
+        let version = VersionReport::read(frame.payload).map(|report| Opened::Version(robot, report));
+        let parts = PartsReport::read(frame.payload).map(|report| Opened::Parts(robot, report));
+        let known = self.own.epoch(frame.sender) == Some(frame.epoch);
+        if let Some(report) = version.or(parts).filter(|_| known) {
             self.own.accept(frame);
-            return Ok(Opened::Version(robot, report));
+            return Ok(report);
         }
         let telemetry = match decode(frame.payload) {
             Some(TeamMessage::Telemetry(telemetry)) => telemetry,

@@ -32,6 +32,7 @@ pub mod key;
 pub mod link;
 pub mod lockstep;
 pub mod network_page;
+pub mod parts;
 pub mod peer;
 pub mod provision;
 pub mod quantized;

@@ -13,6 +13,7 @@ use crate::frame::{
 };
 use crate::host::{HostMessage, PARTS_MAX, Telemetry, WorldPart};
 use crate::host_clock::{Age, HostClock, ticks};
+use crate::parts::PartsReport;
 use crate::peer::PeerTable;
 use crate::team::{Handshake, TEAM_MESSAGE_LEN_MAX, TeamMessage};
 use crate::version::VersionReport;
@@ -83,6 +84,11 @@ impl Link {
 
     /// The packet that reports what this robot runs to its host.
     pub fn seal_version(&mut self, report: &VersionReport) -> Packet {
+        self.seal_payload(&report.payload())
+    }
+
+    /// The packet that reports to its host which parts of this robot work.
+    pub fn seal_parts(&mut self, report: &PartsReport) -> Packet {
         self.seal_payload(&report.payload())
     }
 

@@ -14,7 +14,7 @@ use crate::decision::DecisionPart;
 use crate::host::Telemetry;
 pub use crate::ids::CASE_ROBOTS_MAX;
 use crate::quantized::{WirePoint, WirePose};
-use crate::{CaseId, CycleId, Duration, RobotId, version};
+use crate::{CaseId, CycleId, Duration, RobotId, parts, version};
 
 /// A robot is present for this long after its last beacon (docs/architecture.md §5.1): eight beacons of 20
 /// Hz, so that a lost one is no absence. Robots and host hold to it.
@@ -43,9 +43,9 @@ pub enum TeamMessage {
 
 impl TeamMessage {
     /// Returns whether a payload is meant for the host alone, by its first byte: the variant's number, or
-    /// [`BRING_UP`], or [`version::KIND`]: one comparison.
+    /// [`BRING_UP`], [`version::KIND`] or [`parts::KIND`]: one comparison.
     pub(crate) const fn is_for_host(payload: &[u8]) -> bool {
-        matches!(*payload, [1 | 3 | BRING_UP | version::KIND, ..])
+        matches!(*payload, [1 | 3 | BRING_UP | version::KIND | parts::KIND, ..])
     }
 }
 

@@ -9,6 +9,7 @@ use protocol::host::{
     Condition, Directive, DriveLimits, Hint, HostCommand, HostMessage, KickOrder, RuleRole, Telemetry,
     Welcome, WireBall, WireRobot, WireWho, WorldPart,
 };
+use protocol::parts::{Part, PartState, PartsReport};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::serial::{Lines, line};
 use protocol::team::{
@@ -231,6 +232,14 @@ fn a_report_of_what_a_robot_runs_has_the_bytes_of_the_specification() {
 }
 
 #[test]
+fn a_report_of_parts_has_the_bytes_of_the_specification() {
+    let report = PartsReport { part: 5, evidence: 930, since: 17, ..PartsReport::new() };
+    let report = report.with(Part::encoder(1), PartState::Failed);
+    assert_eq!(report.payload(), worked("parts")[..], "{}", hex(&report.payload()));
+    assert!(postcard::from_bytes::<TeamMessage>(&report.payload()).is_err(), "no message to a team");
+}
+
+#[test]
 fn the_hosts_messages_have_the_bytes_of_the_specification() {
     for (name, world) in worlds() {
         both_ways(name, &world);
@@ -307,8 +316,8 @@ fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
 #[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Eight of robots, two worlds, a welcome, limits, two keys, three frames and a line.
-    assert_eq!(examples, 8 + worlds().len() + 2 + 2 + 4 + commands().len());
+    // Nine of robots, two worlds, a welcome, limits, two keys, three frames and a line.
+    assert_eq!(examples, 9 + worlds().len() + 2 + 2 + 4 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {

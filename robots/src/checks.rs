@@ -1,8 +1,8 @@
 //! `checks`: values of a description against each other: what no single range finds.
 
-use crate::description::Description;
+use crate::description::{Description, Value};
 use crate::finding::{Finding, Severity};
-use crate::wheels::condition;
+use crate::wheels::{condition, wheel_slots};
 
 impl Description {
     /// Reads `text`; `file` names it in findings. The error is every fault that was found, in the file's
@@ -59,7 +59,12 @@ impl List<'_> {
             "body.radius",
             "the flat front cuts the disc of the hull: measure both again",
         );
-        self.below("wheels.distance", "body.radius", "wheels stand within the hull: measure both again");
+        let (reach, hull) = (wheel_slots(&self.of.wheels()).distance, self.of.number("body.radius"));
+        if reach >= hull {
+            let message = format!("wheels.distance is {reach}, not below body.radius, {hull}");
+            let hint = "wheels stand within the hull: measure both again";
+            self.add(Severity::Error, "wheels.distance", message, hint);
+        }
         let [radius, front, mouth] =
             ["body.radius", "body.front", "body.mouth"].map(|path| self.of.number(path));
         let half = (radius * radius - front * front).max(0.0).sqrt();
@@ -74,18 +79,31 @@ impl List<'_> {
     }
 
     fn wheels(&mut self) {
-        let degrees = self.of.wheel_angles();
-        let [front_right, back_right, back_left, front_left] = degrees;
-        let ordered = (-180.0 < back_right && back_right < front_right && front_right <= 0.0)
-            && (0.0 <= front_left && front_left < back_left && back_left < 180.0);
+        let wheels = self.of.wheels();
+        for path in ["wheels.distance", "wheels.skew", "wheels.outputs"] {
+            if let Value::Wheels(list) = self.of.value(path)
+                && (list.len() < wheels.len() || list.len() > wheels.len() && path != "wheels.outputs")
+            {
+                let message = format!("{path} has {} numbers for {} wheels", list.len(), wheels.len());
+                self.add(Severity::Error, path, message, "give one for each wheel of wheels.degrees");
+            }
+        }
+        let degrees: Vec<f32> = wheels.iter().map(|wheel| wheel.place).collect();
+        let ordered = match degrees[..] {
+            [front_right, back_right, back_left, front_left] => {
+                (-180.0 < back_right && back_right < front_right && front_right <= 0.0)
+                    && (0.0 <= front_left && front_left < back_left && back_left < 180.0)
+            }
+            _ => degrees.iter().map(|place| (-place).rem_euclid(360.0)).is_sorted(),
+        };
         if !ordered {
             let message =
                 format!("wheels.degrees is {degrees:?}: not front right, back right, back left, front left");
-            let hint =
-                "right wheels have angles of 0 to -180, left ones 0 to 180, those in front the smaller";
+            let hint = "four: right wheels have angles of 0 to -180, left ones 0 to 180, those in front the smaller; \
+                        three: clockwise from ahead";
             self.add(Severity::Error, "wheels.degrees", message, hint);
         }
-        let condition = condition(degrees);
+        let condition = condition(&wheels);
         if condition > CONDITION_MAX {
             let message = format!(
                 "wheels.degrees: the wheels do not drive in every direction (condition {condition:.0})"

@@ -8,6 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::finding::{Finding, Severity};
 use crate::keys::{KEYS, Key, Kind};
+use crate::wheels::Wheel;
 
 /// A value of a description.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,8 +17,8 @@ pub enum Value {
     Number(f32),
     /// A whole number, 0 or more.
     Whole(u32),
-    /// Angles of the four wheels, degrees.
-    Angles([f32; 4]),
+    /// A number for each wheel, in the key's unit.
+    Wheels(Vec<f32>),
     /// Ball speed, m/s, and pulse, µs.
     Pulses(Vec<(f32, u64)>),
     /// A word or a name.
@@ -89,7 +90,7 @@ impl Description {
         match self.value(path) {
             Value::Number(number) => *number,
             Value::Whole(number) => *number as f32,
-            Value::Angles(_) | Value::Pulses(_) | Value::Text(_) => f32::NAN,
+            Value::Wheels(_) | Value::Pulses(_) | Value::Text(_) => f32::NAN,
         }
     }
 
@@ -103,9 +104,24 @@ impl Description {
         if let Value::Pulses(pulses) = self.value(path) { pulses } else { &[] }
     }
 
-    /// Angles of the wheels, degrees.
-    pub fn wheel_angles(&self) -> [f32; 4] {
-        if let Value::Angles(angles) = self.value("wheels.degrees") { *angles } else { [f32::NAN; 4] }
+    /// The number of a key for one wheel; NaN where the list has none.
+    fn of_wheel(&self, path: &str, index: usize) -> f32 {
+        match self.value(path) {
+            Value::Wheels(list) => list.get(index).copied().unwrap_or(f32::NAN),
+            _ => self.number(path),
+        }
+    }
+
+    /// The wheels, in their order.
+    pub fn wheels(&self) -> Vec<Wheel> {
+        let Value::Wheels(places) = self.value("wheels.degrees") else { return Vec::new() };
+        let wheels = places.iter().enumerate().map(|(index, place)| Wheel {
+            place: *place,
+            distance: self.of_wheel("wheels.distance", index),
+            skew: self.of_wheel("wheels.skew", index),
+            output: self.of_wheel("wheels.outputs", index) as u8,
+        });
+        wheels.collect()
     }
 
     pub(crate) fn finding(
@@ -195,6 +211,10 @@ impl Reader<'_> {
                 table.get(part).and_then(|inner| inner.get_ref().as_table())
             });
         let Some(node) = node.and_then(|table| table.get(key.name())) else {
+            if let Some(absent) = absent(key.kind) {
+                let line = 1 + self.text.get(..span.start).unwrap_or_default().matches('\n').count() as u32;
+                return Some((absent, line));
+            }
             let message = format!("{} is missing ({})", key.path, key.meaning);
             self.error("missing-key", span, message, format!("add it: {}", key.allowed()));
             return None;
@@ -249,8 +269,20 @@ fn read(node: Node<'_, '_>, kind: Kind) -> Option<Value> {
         Kind::Angles => {
             let angles: Option<Vec<f32>> =
                 value.as_array()?.iter().map(|angle| number(angle.get_ref())).collect();
-            let angles: [f32; 4] = angles?.try_into().ok()?;
-            angles.iter().all(|angle| (-180.0..=180.0).contains(angle)).then_some(Value::Angles(angles))
+            let angles = angles.filter(|angles| (3..=4).contains(&angles.len()))?;
+            angles.iter().all(|angle| (-180.0..=180.0).contains(angle)).then_some(Value::Wheels(angles))
+        }
+        Kind::PerWheel(low, high, _) => {
+            let all = number(value).filter(|x| (low..=high).contains(x)).map(Value::Number);
+            all.or_else(|| each(value, low, high).map(Value::Wheels))
+        }
+        Kind::Outputs => {
+            let outputs = each(value, 1.0, 4.0)?;
+            let mut seen = [false; 5];
+            let new = outputs
+                .iter()
+                .all(|output| output.fract() == 0.0 && !std::mem::replace(&mut seen[*output as usize], true));
+            new.then_some(Value::Wheels(outputs))
         }
         Kind::Pulses => pulses(value).map(Value::Pulses),
         Kind::Word(words) => {
@@ -263,6 +295,25 @@ fn read(node: Node<'_, '_>, kind: Kind) -> Option<Value> {
             name.map(|name| Value::Text(name.to_owned()))
         }
     }
+}
+
+/// The value of a key that is not in the file, where it may be absent.
+fn absent(kind: Kind) -> Option<Value> {
+    match kind {
+        Kind::PerWheel(.., absent) => absent.map(Value::Number),
+        Kind::Outputs => Some(Value::Wheels(vec![1.0, 2.0, 3.0, 4.0])),
+        _ => None,
+    }
+}
+
+/// Three or four numbers within a range.
+fn each(value: &DeValue<'_>, low: f32, high: f32) -> Option<Vec<f32>> {
+    let numbers: Option<Vec<f32>> = value
+        .as_array()?
+        .iter()
+        .map(|node| number(node.get_ref()).filter(|x| (low..=high).contains(x)))
+        .collect();
+    numbers.filter(|numbers| (3..=4).contains(&numbers.len()))
 }
 
 /// Pairs of speed and pulse that rise.
@@ -302,7 +353,8 @@ fn fits(value: &DeValue<'_>, kind: Kind) -> bool {
     match kind {
         Kind::Number(..) => matches!(value, DeValue::Float(_) | DeValue::Integer(_)),
         Kind::Whole(..) => matches!(value, DeValue::Integer(_)),
-        Kind::Angles | Kind::Pulses => matches!(value, DeValue::Array(_)),
+        Kind::Angles | Kind::Outputs | Kind::Pulses => matches!(value, DeValue::Array(_)),
+        Kind::PerWheel(..) => matches!(value, DeValue::Float(_) | DeValue::Integer(_) | DeValue::Array(_)),
         Kind::Word(_) | Kind::Name => matches!(value, DeValue::String(_)),
     }
 }
@@ -332,6 +384,7 @@ const PAIRS_MAX: usize = 16;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wheels::wheel_slots;
 
     const OURS: &str = include_str!("../ours.toml");
 
@@ -349,7 +402,9 @@ mod tests {
     fn numbers_are_the_file_s_own() {
         let ours = Description::read("ours.toml", OURS).unwrap();
         assert_eq!((ours.number("body.front"), ours.number("plan.speed")), (0.073, 3.0));
-        assert_eq!(ours.wheel_angles(), [-60.0, -135.0, 135.0, 60.0]);
+        let slots = wheel_slots(&ours.wheels());
+        assert_eq!((slots.count, slots.degrees), (4, [-60.0, -135.0, 135.0, 60.0]));
+        assert_eq!((slots.levers, slots.outputs), ([0.081; 4], [0, 1, 2, 3]));
         assert_eq!(ours.pulses("kicker.flat_pulses"), [(2.0, 1_500), (4.0, 2_600), (6.5, 4_500)]);
         assert_eq!((ours.text("motors.scheme"), ours.number("kicker.pause_ms")), ("pwm-direction", 500.0));
         assert_eq!(ours.entries().count(), KEYS.len());

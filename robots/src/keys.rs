@@ -21,8 +21,13 @@ pub enum Kind {
     Number(f32, f32),
     /// A whole number from the first to the second.
     Whole(u32, u32),
-    /// Four angles, degrees, one for each wheel.
+    /// Three or four angles, degrees, one for each wheel.
     Angles,
+    /// One number for all wheels, or a list with one for each, from the first to the second; the third where
+    /// the key is absent.
+    PerWheel(f32, f32, Option<f32>),
+    /// For each wheel another number from 1 to 4; 1, 2, 3, 4 where the key is absent.
+    Outputs,
     /// Pairs of ball speed, m/s, and pulse, µs; both rise.
     Pulses,
     /// One of these words.
@@ -59,9 +64,26 @@ pub const KEYS: &[Key] = &[
         path: "wheels.degrees",
         unit: "degrees",
         kind: Kind::Angles,
-        meaning: "where the wheels stand, counter-clockwise from ahead: front right, back right, back left, front left",
+        meaning: "where the wheels stand, counter-clockwise from ahead: front right, back right, back left, front left; of three wheels clockwise",
     },
-    number("wheels.distance", "m", 0.02, RADIUS_MAX, "from the robot's centre to a wheel"),
+    Key {
+        path: "wheels.distance",
+        unit: "m",
+        kind: Kind::PerWheel(0.02, RADIUS_MAX, None),
+        meaning: "from the robot's centre to a wheel",
+    },
+    Key {
+        path: "wheels.skew",
+        unit: "degrees",
+        kind: Kind::PerWheel(-60.0, 60.0, Some(0.0)),
+        meaning: "how far a wheel's drive is turned from its tangent, counter-clockwise",
+    },
+    Key {
+        path: "wheels.outputs",
+        unit: "",
+        kind: Kind::Outputs,
+        meaning: "which of the board's motor outputs, with its encoder, drives each wheel (boards)",
+    },
     number("wheels.radius", "m", 0.01, 0.06, "radius of a wheel on the carpet (boards)"),
     number("wheels.free_speed", "m/s", 0.5, 15.0, "rim speed at full voltage without load"),
     number("wheels.rim_max", "m/s", 0.3, 15.0, "fastest rim that is ordered"),
@@ -229,7 +251,14 @@ impl Key {
         match self.kind {
             Kind::Number(low, high) => format!("{low} to {high}{unit}"),
             Kind::Whole(low, high) => format!("a whole number, {low} to {high}{unit}"),
-            Kind::Angles => "four angles, -180 to 180 degrees".to_owned(),
+            Kind::Angles => "three or four angles, -180 to 180 degrees".to_owned(),
+            Kind::PerWheel(low, high, absent) => {
+                let absent = absent.map_or(String::new(), |absent| format!("; {absent} where it is absent"));
+                format!("{low} to {high}{unit}, or a list with one for each wheel{absent}")
+            }
+            Kind::Outputs => {
+                "different numbers from 1 to 4, one for each wheel; absent: 1, 2, 3, 4".to_owned()
+            }
             Kind::Pulses => "2 to 16 pairs [m/s, µs], both rising, at most 15 m/s and 6000 µs".to_owned(),
             Kind::Word(words) => words.join(", "),
             Kind::Name => "1 to 32 letters, digits, - and _".to_owned(),

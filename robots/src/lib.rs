@@ -20,13 +20,15 @@ pub use description::{Description, Value};
 pub use finding::{Finding, Severity};
 pub use keys::{KEYS, Key, Kind};
 pub use place::{Chosen, Unreadable, VARIABLE, chosen};
-pub use wheels::condition;
+pub use wheels::{Wheel, WheelSlots, condition, wheel_slots};
 
 /// Descriptions that come with the project: name and text. The first is the default.
-pub const BUILT_IN: [(&str, &str); 3] = [
+pub const BUILT_IN: [(&str, &str); 5] = [
     ("ours", include_str!("../ours.toml")),
     ("wide", include_str!("../wide.toml")),
     ("school", include_str!("../school.toml")),
+    ("three", include_str!("../three.toml")),
+    ("skewed", include_str!("../skewed.toml")),
 ];
 
 /// The text of the built-in description of that name.

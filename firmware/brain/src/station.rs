@@ -6,6 +6,7 @@
 use casebase::CaseBase;
 use protocol::frame::{RobotKeys, Sender, TeamKey, claimed_sender, claims_audience};
 use protocol::link::{Link, Packet, Received};
+use protocol::parts::PartsReport;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::TeamMessage;
 use protocol::version::VersionReport;
@@ -126,6 +127,12 @@ impl<'a> Station<'a> {
     pub fn version_packet(&mut self, now: Instant, report: &VersionReport) -> Option<Packet> {
         let free = self.link.host_epoch().is_some() && self.last_sent != Some(now);
         free.then(|| self.link.seal_version(report))
+    }
+
+    /// The packet that reports which parts of this robot work; `None` as [`Self::version_packet`] is.
+    pub fn parts_packet(&mut self, now: Instant, report: &PartsReport) -> Option<Packet> {
+        let free = self.link.host_epoch().is_some() && self.last_sent != Some(now);
+        free.then(|| self.link.seal_parts(report))
     }
 
     /// The actuator orders, if there are new ones.

@@ -1,12 +1,13 @@
-//! `omni`: kinematics of four omnidirectional wheels; body frame, m/s at the rim, rad/s.
+//! `omni`: kinematics of three or four omnidirectional wheels; body frame, m/s at the rim, rad/s.
 //!
 //! Order as on the league's wire: front right, back right, back left, front left. A wheel stands at the angle
 //! α from the robot's heading, counter-clockwise, at the distance R from its centre, and drives along its
-//! tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. Positive rims turn the robot
+//! tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. One whose drive is turned by β from the
+//! tangent is as a tangential one at α + β with the lever R · cos β. Positive rims turn the robot
 //! counter-clockwise.
 
 use geometry::{Angle, Body, Twist, Vector};
-use rules::RobotSpec;
+use rules::{RobotSpec, WheelSpec};
 
 /// Rim speeds in the order of the wire, m/s.
 pub type Rims = [f32; 4];
@@ -16,15 +17,24 @@ pub type Rims = [f32; 4];
 pub struct Wheels {
     /// Angles from the robot's heading, counter-clockwise, in the order of the wire.
     pub angles: [Angle; 4],
-    /// Distance from the robot's centre to a wheel, m.
-    pub distance: f32,
+    /// Rim speed of each for a turn of 1 rad/s, m/s: a tangential wheel's distance from the centre, m.
+    pub levers: [f32; 4],
+    /// Whether there is such a wheel, and it drives.
+    pub driven: [bool; 4],
+}
+
+impl Wheels {
+    /// The wheels of this robot.
+    pub fn of(spec: &WheelSpec) -> Self {
+        let driven = core::array::from_fn(|wheel| wheel < usize::from(spec.count));
+        Self { angles: spec.degrees.map(Angle::degrees), levers: spec.levers, driven }
+    }
 }
 
 impl Default for Wheels {
     /// Our robots' (`RobotSpec::OURS.wheels`).
     fn default() -> Self {
-        let wheels = RobotSpec::OURS.wheels;
-        Self { angles: wheels.degrees.map(Angle::degrees), distance: wheels.distance }
+        Self::of(&RobotSpec::OURS.wheels)
     }
 }
 
@@ -35,7 +45,7 @@ pub struct WheelsError;
 impl core::fmt::Display for WheelsError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(
-            "the wheels do not drive in every direction; give them angles that differ, and a distance > 0",
+            "the wheels do not drive in every direction; give them angles that differ, and distances > 0",
         )
     }
 }
@@ -60,10 +70,15 @@ impl Default for Omni {
 impl Omni {
     /// Kinematics of these wheels.
     pub fn new(wheels: &Wheels) -> Result<Self, WheelsError> {
-        let rows = wheels.angles.map(|angle| {
-            let (s, c) = angle.sin_cos();
-            [-s, c, wheels.distance]
-        });
+        let mut rows = [[0.0; 3]; 4];
+        for (((row, angle), lever), driven) in
+            rows.iter_mut().zip(wheels.angles).zip(wheels.levers).zip(wheels.driven)
+        {
+            if driven {
+                let (s, c) = angle.sin_cos();
+                *row = [-s, c, lever];
+            }
+        }
         // Normal equations: (JᵀJ)⁻¹ Jᵀ, three by three, by cofactors.
         let mut m = [[0.0_f32; 3]; 3];
         for row in &rows {
@@ -106,6 +121,17 @@ impl Omni {
             a * p + b * q + c * r + d * s
         });
         Twist { linear: Vector::new(x, y), angular }
+    }
+
+    /// Force ahead and to the left, and torque, of wheels that each push with this force along their roll.
+    pub fn forces(&self, pushes: Rims) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        for (row, push) in self.rows.iter().zip(pushes) {
+            for (sum, part) in sum.iter_mut().zip(row) {
+                *sum += part * push;
+            }
+        }
+        sum
     }
 
     /// The fastest wheel's part in these rim speeds that no motion of the body explains: above some cm/s a
@@ -214,6 +240,33 @@ mod tests {
     }
 
     #[test]
+    fn three_wheels_and_skewed_ones_drive_as_their_contact_points_move() {
+        // Place, distance, skew; the fourth wheel of the last is missing.
+        let robots = [
+            ([[-60.0, 0.08, 15.0], [-135.0, 0.07, -20.0], [135.0, 0.07, 20.0], [60.0, 0.08, -15.0]], 4),
+            ([[-60.0, 0.08, 0.0], [180.0, 0.06, 30.0], [60.0, 0.08, 0.0], [0.0; 3]], 3),
+        ];
+        for (wheels, count) in robots {
+            let lever = |[_, distance, skew]: [f32; 3]| distance * Angle::degrees(skew).sin_cos().1;
+            let degrees = wheels.map(|[place, _, skew]| place + skew);
+            let spec = WheelSpec { count, degrees, levers: wheels.map(lever), ..RobotSpec::OURS.wheels };
+            let omni = Omni::new(&Wheels::of(&spec)).unwrap();
+            let moved = twist(0.7, -1.1, 3.0);
+            let rims = omni.rims(moved);
+            for (wheel, rim) in wheels.iter().zip(rims).take(usize::from(count)) {
+                let [place, distance, skew] = *wheel;
+                let arm: Vector<Body> = Vector::polar(distance, Angle::degrees(place));
+                let point = moved.linear + Vector::new(-arm.y(), arm.x()) * moved.angular;
+                let drive: Vector<Body> = Vector::polar(1.0, Angle::degrees(place + 90.0 + skew));
+                assert!((point.dot(drive) - rim).abs() < 1e-5, "{wheel:?}: {rim}");
+            }
+            let back = omni.twist(rims);
+            assert!((back.linear - moved.linear).norm() < 1e-5 && (back.angular - 3.0).abs() < 1e-4);
+            assert_eq!(rims[3] == 0.0, count == 3);
+        }
+    }
+
+    #[test]
     fn saturation_keeps_the_direction_and_the_curve() {
         let omni = Omni::default();
         let wanted = twist(3.0, 4.0, 10.0);
@@ -244,10 +297,13 @@ mod tests {
 
     #[test]
     fn wheels_that_cannot_drive_everywhere_are_refused() {
-        let parallel = Wheels { angles: [90.0, 90.0, -90.0, -90.0].map(Angle::degrees), distance: 0.08 };
+        let parallel = Wheels { angles: [90.0, 90.0, -90.0, -90.0].map(Angle::degrees), ..Wheels::default() };
         assert_eq!(Omni::new(&parallel), Err(WheelsError));
-        assert_eq!(Omni::new(&Wheels { distance: 0.0, ..Wheels::default() }), Err(WheelsError));
-        assert_eq!(Omni::new(&Wheels { distance: f32::NAN, ..Wheels::default() }), Err(WheelsError));
+        for lever in [0.0, f32::NAN] {
+            assert_eq!(Omni::new(&Wheels { levers: [lever; 4], ..Wheels::default() }), Err(WheelsError));
+        }
+        let two = Wheels { driven: [true, false, true, false], ..Wheels::default() };
+        assert_eq!(Omni::new(&two), Err(WheelsError));
         assert!(Omni::new(&Wheels::default()).is_ok());
     }
 }

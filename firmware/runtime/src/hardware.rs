@@ -17,21 +17,24 @@ use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Ticker, Timer};
-use geometry::{Body, Twist};
-use motion::omni::Omni;
 use protocol::robot_io::{Health, OmniKick, SensorFrame, WHEELED_STEP};
 
 use crate::kicker::{Interlock, KickerAct};
 use crate::mailboxes::{Arrival, Mailboxes};
+use crate::parts::{Means, PartsEstimator, Rolled};
 use crate::ports::{Kicker, Probes, RadioReceiver, Watchdog, WheelsPort};
 use crate::progress::RobotPart;
 use crate::tasks::now;
-use crate::wheel::{CONTROL_PERIOD, Control, Motors, WHEELS};
+use crate::wheel::{CONTROL_PERIOD, Control, Lost, Motors, WHEELS};
 
 /// Signals between the tasks of this module.
 pub struct Wires {
     /// Measured rim speeds, m/s.
     rims: Signal<CriticalSectionRawMutex, [f32; WHEELS]>,
+    /// Means of the control loop's readings over the brain's period.
+    rolled: Signal<CriticalSectionRawMutex, Rolled>,
+    /// Parts that the control loop goes on without.
+    lost: Signal<CriticalSectionRawMutex, Lost>,
     /// Newest request to the kicker.
     request: Signal<CriticalSectionRawMutex, OmniKick>,
 }
@@ -39,7 +42,7 @@ pub struct Wires {
 impl Wires {
     /// Signals of which none is set.
     pub const fn new() -> Self {
-        Self { rims: Signal::new(), request: Signal::new() }
+        Self { rims: Signal::new(), rolled: Signal::new(), lost: Signal::new(), request: Signal::new() }
     }
 }
 
@@ -54,17 +57,24 @@ impl Default for Wires {
 pub async fn control(mut wheels: impl WheelsPort, boxes: &Mailboxes, wires: &Wires) -> ! {
     let mut ticker = Ticker::every(Duration::from_micros(CONTROL_PERIOD.0));
     let mut control = Control::new();
+    let mut means = Means::default();
     loop {
         ticker.next().await;
         let now = now();
         if let Some(orders) = boxes.orders.try_take() {
             control.take_orders(now, orders);
         }
+        if let Some(lost) = wires.lost.try_take() {
+            control.lose(lost);
+        }
         let measured = wheels.measured();
         let step = control.step(now, measured);
         match step.motors {
             Motors::Driven(duty) => wheels.drive(duty, step.dribbler),
             Motors::Released => wheels.release(),
+        }
+        if let Some(rolled) = means.add(measured, step.motors) {
+            wires.rolled.signal(rolled);
         }
         wires.rims.signal(measured);
         wires.request.signal(step.kick);
@@ -94,7 +104,7 @@ pub async fn kicker(mut kicker: impl Kicker, wires: &Wires) -> ! {
 /// host.
 pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -> ! {
     let mut ticker = Ticker::every(BRAIN_PERIOD);
-    let kinematics = Omni::default();
+    let mut parts = PartsEstimator::new();
     let mut rims = [0.0; WHEELS];
     loop {
         ticker.next().await;
@@ -102,9 +112,16 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
             rims = newest;
         }
         let seen = probes.look();
-        let Twist { linear, angular } = kinematics.twist(rims);
+        if let Some(rolled) = wires.rolled.try_take() {
+            let before = parts.lost();
+            parts.step(now(), &rolled, seen.turn);
+            boxes.parts.lock(|report| report.set(parts.report()));
+            if parts.lost() != before {
+                wires.lost.signal(parts.lost());
+            }
+        }
         // A gyroscope measures the turning rate better than four wheels, where there is one.
-        let odometry: Twist<Body> = Twist { linear, angular: seen.turn.unwrap_or(angular) };
+        let odometry = parts.odometry(rims, seen.turn);
         let health = Health { battery: seen.battery, tipped: seen.tipped, kicker_ready: seen.kicker_ready };
         let sensors = SensorFrame {
             pose: None,
@@ -166,6 +183,8 @@ mod tests {
     use super::*;
     use crate::testing::World;
     use core::cell::{Cell, RefCell};
+    use geometry::Twist;
+    use motion::omni::Omni;
     use protocol::link::Packet;
     use protocol::robot_io::ActuatorFrame;
     use std::boxed::Box;

@@ -36,6 +36,7 @@ pub mod ending;
 pub mod hardware;
 pub mod kicker;
 mod mailboxes;
+pub mod parts;
 pub mod persistent_counter;
 pub mod ports;
 pub mod progress;

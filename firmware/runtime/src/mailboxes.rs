@@ -1,13 +1,16 @@
 //! `mailboxes`: mailboxes between a robot's tasks: one inbox to the brain, one outbox of packets and one
 //! signal of orders from it.
 
+use core::cell::Cell;
 use core::future::poll_fn;
 use core::sync::atomic::{AtomicU32, Ordering};
 
+use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
 use protocol::link::Packet;
+use protocol::parts::PartsReport;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 
 use crate::progress::{RobotPart, TaskProgress};
@@ -40,6 +43,8 @@ pub struct Mailboxes {
     pub(crate) orders: Signal<CriticalSectionRawMutex, ActuatorFrame>,
     /// Parts that have run, for the watchdog.
     pub(crate) progress: TaskProgress,
+    /// The newest report of the robot's parts.
+    pub(crate) parts: Mutex<CriticalSectionRawMutex, Cell<PartsReport>>,
     unsent: AtomicU32,
     undelivered: AtomicU32,
 }
@@ -52,6 +57,7 @@ impl Mailboxes {
             outbox: Channel::new(),
             orders: Signal::new(),
             progress: TaskProgress::new(),
+            parts: Mutex::new(Cell::new(PartsReport::new())),
             unsent: AtomicU32::new(0),
             undelivered: AtomicU32::new(0),
         }

@@ -1,13 +1,18 @@
-//! `reporting`: a station that also reports to its host, once a second, what its robot runs.
+//! `reporting`: a station that also reports to its host, once a second, what its robot runs, and twice a
+//! second which of its parts have failed, once one is suspected.
+
+use core::cell::Cell;
 
 use brain::Station;
 use protocol::link::Packet;
+use protocol::parts::PartsReport;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::version::{VersionReport, hash_of, parse_hash, parts_of};
 use protocol::{Duration, Instant};
 use rules::RobotSpec;
 
 use crate::controller::Controller;
+use crate::mailboxes::Mailboxes;
 
 /// What this image is, as `onetwo firmware` builds it; other builds do not know their sources. Each brain has
 /// a case base of its own.
@@ -21,11 +26,31 @@ pub(crate) const IMAGE: VersionReport = VersionReport {
 /// Time between two reports: 280 bit/s of a channel that carries 1 Mb/s.
 const REPORT_EVERY: Duration = Duration::millis(1_000);
 
+/// Time between two reports of parts of which one is not right.
+const PARTS_EVERY: Duration = Duration::millis(500);
+
 /// A station, what it reports, and when it did so last.
 pub(crate) struct Reporting<'s, 'a> {
     pub(crate) station: &'s mut Station<'a>,
     pub(crate) report: VersionReport,
     pub(crate) last: Instant,
+    pub(crate) boxes: &'s Mailboxes,
+    /// The newest report of parts, and when it went out.
+    pub(crate) parts: (PartsReport, Instant),
+}
+
+impl Reporting<'_, '_> {
+    /// The report of parts, if it is due: at once where a state is another, and again while one is not right.
+    fn parts_packet(&mut self, now: Instant) -> Option<Packet> {
+        let (last, at) = self.parts;
+        let report = self.boxes.parts.lock(Cell::get);
+        let due = !report.has_states_of(&last) || !report.is_ok() && now.since(at) >= PARTS_EVERY;
+        let packet = if due { self.station.parts_packet(now, &report) } else { None };
+        if packet.is_some() {
+            self.parts = (report, now);
+        }
+        packet
+    }
 }
 
 impl Controller for Reporting<'_, '_> {
@@ -40,6 +65,7 @@ impl Controller for Reporting<'_, '_> {
     }
     fn poll_packet(&mut self, now: Instant) -> Option<Packet> {
         let packet = self.station.poll_packet(now);
+        let packet = packet.or_else(|| self.parts_packet(now));
         if packet.is_some() || now.since(self.last) < REPORT_EVERY {
             return packet;
         }

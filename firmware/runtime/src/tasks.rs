@@ -12,6 +12,7 @@ use embassy_sync::channel::TryReceiveError;
 use embassy_time::with_deadline;
 use protocol::frame::RobotKeys;
 use protocol::journal::Writer;
+use protocol::parts::PartsReport;
 use protocol::version::VersionReport;
 use protocol::{Duration, Instant};
 
@@ -39,7 +40,8 @@ pub async fn brain_with_keys(
     // Constructed in place; moving it would store it twice in this future, and on the stack in between.
     let mut station = Station::with_keys(now(), config, base, keys);
     let report = VersionReport { case_base: base.hash(), ..IMAGE };
-    think(&mut Reporting { station: &mut station, report, last: now() }, boxes).await
+    let parts = (PartsReport::new(), now());
+    think(&mut Reporting { station: &mut station, report, last: now(), boxes, parts }, boxes).await
 }
 
 /// Runs as [`brain_with_keys`] does, with all inputs and outputs in a journal.

@@ -337,13 +337,16 @@ fn a_reporting_station_tells_its_host_once_a_second_what_it_runs() {
     use protocol::frame::TeamKey;
     use protocol::host::HostMessage;
     use protocol::host_link::{HostLink, Opened};
+    use protocol::parts::PartsReport;
     use protocol::version::VersionReport;
 
     let (id, team) = (RobotId::new(3).unwrap(), TeamId(1));
     let config = BrainConfig::hosted(id, team, rules::League::DivisionB);
     let mut station = Station::new(Instant(0), &config, case_library::division_b());
     let report = VersionReport { image: 7, case_base: 8, ..crate::reporting::IMAGE };
-    let mut robot = crate::reporting::Reporting { station: &mut station, report, last: Instant(0) };
+    let (boxes, parts) = (Mailboxes::new(), (PartsReport::new(), Instant(0)));
+    let mut robot =
+        crate::reporting::Reporting { station: &mut station, report, last: Instant(0), boxes: &boxes, parts };
     let mut host = HostLink::new(team, TeamKey::ZERO, 70);
     let mut reported = Vec::new();
     for step in 1..=350_u64 {

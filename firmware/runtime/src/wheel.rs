@@ -2,6 +2,7 @@
 //! (docs/architecture.md §2.3, §6.2). Sans-IO; m/s at the rim, duty cycle as a share of the battery's
 //! voltage.
 
+use motion::omni::{Omni, Wheels};
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::{Duration, Instant};
 use rules::{RobotSpec, WheelSpec};
@@ -10,6 +11,30 @@ use rules::{RobotSpec, WheelSpec};
 pub const WHEELS: usize = 4;
 /// Period of the control loop (docs/architecture.md §2.3).
 pub const CONTROL_PERIOD: Duration = Duration::millis(1);
+
+/// Parts that are no longer used, as bits of the wheels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Lost {
+    /// Motors.
+    pub motors: u8,
+    /// Encoders.
+    pub encoders: u8,
+    /// The gyroscope.
+    pub gyroscope: bool,
+}
+
+impl Lost {
+    /// Whether wheels are lost.
+    pub const fn is_lame(self) -> bool {
+        self.motors | self.encoders != 0
+    }
+
+    /// Whether fewer than three wheels are left, or two parts of wheels are lost: the robot stands.
+    pub const fn stops(self) -> bool {
+        let lost = (self.motors | self.encoders).count_ones();
+        lost > 1 || lost + 3 > RobotSpec::OURS.wheels.count as u32
+    }
+}
 
 /// Output of the motors until the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,19 +56,41 @@ pub struct ControlOutput {
     pub kick: OmniKick,
 }
 
-/// The control loop of four wheels.
+/// The control loop of up to four wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {
     orders: Option<(Instant, ActuatorFrame)>,
     /// Present target rim speeds, m/s; decrease without orders.
     target: [f32; WHEELS],
     integral: [f32; WHEELS],
+    lost: Lost,
+    /// Share of a lost motor's push that each other takes over.
+    shares: [f32; WHEELS],
 }
 
 impl Control {
     /// A controller without orders: the motors are without current.
     pub const fn new() -> Self {
-        Self { orders: None, target: [0.0; WHEELS], integral: [0.0; WHEELS] }
+        Self {
+            orders: None,
+            target: [0.0; WHEELS],
+            integral: [0.0; WHEELS],
+            lost: Lost { motors: 0, encoders: 0, gyroscope: false },
+            shares: [0.0; WHEELS],
+        }
+    }
+
+    /// Parts that it goes on without.
+    pub fn lose(&mut self, lost: Lost) {
+        self.lost = lost;
+        self.shares = [0.0; WHEELS];
+        let Some(dead) = (0..WHEELS).find(|wheel| lost.motors & 1 << wheel != 0) else { return };
+        let (all, others) = (Omni::default(), without(dead));
+        // The others' pushes that together are as one of it: as their rims turn it along.
+        for (wheel, share) in self.shares.iter_mut().enumerate().filter(|(wheel, _)| *wheel != dead) {
+            let one = core::array::from_fn(|other| if other == wheel { 1.0 } else { 0.0 });
+            *share = all.rims(others.twist(one)).get(dead).copied().unwrap_or(0.0);
+        }
     }
 
     /// Takes the brain's new orders.
@@ -53,16 +100,17 @@ impl Control {
 
     /// One step of a millisecond: the drive for the encoders' readings.
     pub fn step(&mut self, now: Instant, measured: [f32; WHEELS]) -> ControlOutput {
-        let fresh = self.orders.filter(|(at, _)| now.since(*at) < ORDERS_AGE_MAX).map(|(_, orders)| orders);
+        let fresh = self.orders.filter(|(at, _)| now.since(*at) < ORDERS_AGE_MAX && !self.lost.stops());
+        let fresh = fresh.map(|(_, orders)| orders);
         let (dribbler, kick) = match (self.orders, fresh) {
             (None, _) | (_, Some(ActuatorFrame::Released | ActuatorFrame::Legged { .. })) => {
-                *self = Self { orders: self.orders, ..Self::new() };
+                *self = Self { orders: self.orders, lost: self.lost, shares: self.shares, ..Self::new() };
                 return ControlOutput { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
             }
             (Some(_), Some(ActuatorFrame::Omni { wheels, dribbler, kick }))
                 if is_finite(&wheels, dribbler) =>
             {
-                self.target = wheels;
+                self.target = if self.lost.is_lame() { limped(self.target, wheels) } else { wheels };
                 (dribbler, kick)
             }
             // The brain is silent, or has sent NaN: brakes to a stop as fast as wheels hold the field
@@ -73,9 +121,13 @@ impl Control {
             }
         };
         let mut duty = [0.0; WHEELS];
-        for (((duty, target), measured), integral) in
-            duty.iter_mut().zip(&self.target).zip(&measured).zip(&mut self.integral)
+        for (wheel, (((duty, target), measured), integral)) in
+            duty.iter_mut().zip(&self.target).zip(&measured).zip(&mut self.integral).enumerate()
         {
+            let measured = if self.lost.encoders & 1 << wheel == 0 { *measured } else { f32::NAN };
+            if !measured.is_finite() {
+                *integral = 0.0;
+            }
             // A broken sensor is ignored: the wheel runs open-loop, by the motor's own constant.
             let error = if measured.is_finite() { target - measured } else { 0.0 };
             let open = target * FEED_FORWARD + error * PROPORTIONAL;
@@ -87,7 +139,24 @@ impl Control {
                 *integral = trial;
             }
         }
+        if self.lost.motors != 0 {
+            self.share_out(&mut duty);
+        }
         ControlOutput { motors: Motors::Driven(duty), dribbler, kick }
+    }
+
+    /// Gives the push of a lost motor to the others.
+    fn share_out(&self, duty: &mut [f32; WHEELS]) {
+        for wheel in 0..WHEELS {
+            if self.lost.motors & 1 << wheel == 0 {
+                continue;
+            }
+            let (Some(own), Some(target)) = (duty.get_mut(wheel), self.target.get(wheel)) else { return };
+            let push = core::mem::take(own) - target * FEED_FORWARD;
+            for (duty, share) in duty.iter_mut().zip(self.shares) {
+                *duty = (*duty + push * share).clamp(-1.0, 1.0);
+            }
+        }
     }
 }
 
@@ -95,6 +164,29 @@ impl Default for Control {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// Kinematics of all wheels but one; of all, where three are left that do not drive everywhere.
+#[inline(never)]
+pub(crate) fn without(wheel: usize) -> Omni {
+    let mut wheels = Wheels::default();
+    if let Some(place) = wheels.driven.get_mut(wheel) {
+        *place = false;
+    }
+    Omni::new(&wheels).unwrap_or_default()
+}
+
+/// The target speeds a step later of a robot that goes on with three wheels. All change in the same
+/// proportion: the body's motion stays on its way.
+fn limped(from: [f32; WHEELS], ordered: [f32; WHEELS]) -> [f32; WHEELS] {
+    let fastest = ordered.iter().fold(LAME_RIM_MAX, |most, rim| most.max(rim.abs()));
+    let to = ordered.map(|rim| rim * (LAME_RIM_MAX / fastest));
+    let largest = from.iter().zip(to).fold(LAME_STEP, |most, (from, to)| most.max((to - from).abs()));
+    let mut next = from;
+    for (rim, to) in next.iter_mut().zip(to) {
+        *rim += (to - *rim) * (LAME_STEP / largest);
+    }
+    next
 }
 
 /// The target speed one braking step later, m/s.
@@ -109,6 +201,11 @@ fn is_finite(wheels: &[f32; WHEELS], dribbler: f32) -> bool {
 /// An order older than this is invalid: five steps of the brain. The governor brakes for a silent host, this
 /// loop for a silent brain.
 pub const ORDERS_AGE_MAX: Duration = Duration::millis(50);
+/// Fastest rim of a robot that goes on with three wheels, m/s: it stops from there within 0.15 m.
+const LAME_RIM_MAX: f32 = 1.0;
+/// Change of its rims in a step, m/s: less than four wheels brake with, and enough for the brain's plans to
+/// hold (with half of it robots circle round their places).
+const LAME_STEP: f32 = 0.7 * BRAKE_PER_STEP;
 const SPEC: WheelSpec = RobotSpec::OURS.wheels;
 /// Control steps in a second.
 const STEPS_PER_S: f32 = (1_000_000 / CONTROL_PERIOD.0) as f32;

@@ -38,6 +38,8 @@ impl Parameters {
                 wheels_deg,
                 wheel_distance: (of.wheel_distance + (own.wheels.distance - REFERENCE.wheels.distance))
                     .min(radius),
+                wheel_levers: own.wheels.levers.map(|lever| lever / own.wheels.distance),
+                wheel_count: own.wheels.count,
             },
             drive: DriveParameters {
                 forward: drive.forward * (a.forward / b.forward),

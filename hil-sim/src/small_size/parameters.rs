@@ -176,10 +176,26 @@ pub struct BodyParameters {
     pub mouth: f32,
     /// kg, of the whole robot.
     pub mass: f32,
-    /// Angles of the wheels, counter-clockwise from ahead: front right, back right, back left, front left.
+    /// Angles of the wheels, counter-clockwise from ahead: front right, back right, back left, front left; of
+    /// a wheel that is not tangential that of the tangential one with the same direction.
     pub wheels_deg: [f32; 4],
     /// m, centre to wheel.
     pub wheel_distance: f32,
+    /// Share of that distance by which each wheel turns the robot.
+    #[serde(default = "all_of_it")]
+    pub wheel_levers: [f32; 4],
+    /// Wheels, 3 or 4; of three the last place is empty.
+    #[serde(default = "four")]
+    pub wheel_count: u8,
+}
+
+/// Each wheel stands at the distance, and is tangential.
+fn all_of_it() -> [f32; 4] {
+    [1.0; 4]
+}
+
+fn four() -> u8 {
+    4
 }
 
 /// The cameras above the field.
@@ -265,6 +281,12 @@ impl Parameters {
 }
 
 impl BodyParameters {
+    /// Kinematics of its wheels; `None` where they cannot drive in every direction.
+    pub(super) fn wheels(&self) -> Option<Wheels> {
+        let levers = self.wheel_levers.map(|share| self.wheel_distance * share);
+        Wheels::new(self.wheels_deg, levers, self.wheel_count)
+    }
+
     /// Checks a body against the limits of the physics; specifications of the simulation protocol are checked
     /// here too.
     pub fn check(&self) -> Result<(), ParameterError> {
@@ -278,7 +300,11 @@ impl BodyParameters {
         for angle in self.wheels_deg {
             within("robot.wheels_deg", angle, -360.0, 360.0)?;
         }
-        let solved = Wheels::new(self.wheels_deg, self.wheel_distance).is_some();
+        for lever in self.wheel_levers {
+            within("robot.wheel_levers", lever, 0.0, 1.0)?;
+        }
+        within("robot.wheel_count", f32::from(self.wheel_count), 3.0, 4.0)?;
+        let solved = self.wheels().is_some();
         within("robot.wheels_deg (directions the wheels can drive in)", f32::from(u8::from(solved)), 1.0, 1.0)
     }
 }

@@ -128,8 +128,7 @@ impl Robot {
             dragged: None,
             odometer: Odometer::default(),
             grip: [[1.0; 2]; 2],
-            wheels: Wheels::new(body.wheels_deg, body.wheel_distance)
-                .expect("a checked body has wheels that drive"),
+            wheels: body.wheels().expect("a checked body has wheels that drive"),
             rims: [0.0; 4],
             used: 0.0,
         };
@@ -141,7 +140,7 @@ impl Robot {
 
     /// Replaces the body, from the next step on; one that [`BodyParameters::check`] refuses changes nothing.
     pub fn set_body(&mut self, body: BodyParameters) {
-        if let Some(wheels) = Wheels::new(body.wheels_deg, body.wheel_distance) {
+        if let Some(wheels) = body.wheels() {
             self.wheels = wheels;
             self.settled = false;
             self.body = body;

@@ -1,8 +1,8 @@
-//! `wheels`: kinematics of four wheels. m/s at the rim, rad/s, body frame.
+//! `wheels`: kinematics of three or four wheels. m/s at the rim, rad/s, body frame.
 //!
-//! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. Four
-//! rims and three degrees of freedom: the body follows the least squares. Written independently of `motion`'s
-//! kinematics, which robots use.
+//! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. With
+//! four rims and three degrees of freedom the body follows the least squares. Written independently of
+//! `motion`'s kinematics, which robots use.
 
 use geometry::Angle;
 use serde::{Deserialize, Serialize};
@@ -17,13 +17,14 @@ pub(super) struct Wheels {
 }
 
 impl Wheels {
-    /// Wheels at these angles, degrees from ahead, `distance` m from the centre; `None` where they cannot
-    /// drive in every direction.
-    pub(super) fn new(wheels_deg: [f32; 4], distance: f32) -> Option<Self> {
-        let rows = wheels_deg.map(|degrees| {
-            let (s, c) = Angle::degrees(degrees).sin_cos();
-            [-s, c, distance]
-        });
+    /// The first `count` wheels at these angles, degrees from ahead, with these levers, m; `None` where they
+    /// cannot drive in every direction.
+    pub(super) fn new(wheels_deg: [f32; 4], levers: [f32; 4], count: u8) -> Option<Self> {
+        let mut rows = [[0.0; 3]; 4];
+        for (wheel, row) in rows.iter_mut().enumerate().take(usize::from(count)) {
+            let (s, c) = Angle::degrees(wheels_deg[wheel]).sin_cos();
+            *row = [-s, c, levers[wheel]];
+        }
         // Gauss–Jordan on (JᵀJ | Jᵀ); once per body.
         let mut system = [[0.0_f32; 7]; 3];
         for (i, line) in system.iter_mut().enumerate() {
@@ -38,7 +39,7 @@ impl Wheels {
             system.swap(pivot, largest);
             let value = system[pivot][pivot];
             // 1e-5 of a wheel at 10 mm: rounding errors of a singular matrix stay far below.
-            if value.abs() < 1e-5 * distance {
+            if value.abs() < 1e-5 * levers.into_iter().fold(0.0, f32::max) {
                 return None;
             }
             let line = system[pivot].map(|cell| cell / value);
@@ -88,7 +89,7 @@ mod tests {
 
     fn wheels() -> Wheels {
         let body = Parameters::of(League::DivisionB).unwrap().robot;
-        Wheels::new(body.wheels_deg, body.wheel_distance).unwrap()
+        body.wheels().unwrap()
     }
 
     #[test]
@@ -114,6 +115,8 @@ mod tests {
         for (value, by) in wheels.motion(wheels.rims(wanted)).into_iter().zip(wanted) {
             assert!((value - by).abs() < 1e-5);
         }
-        assert!(Wheels::new([90.0, -90.0, 90.0, -90.0], 0.08).is_none());
+        let levers = [0.08; 4];
+        assert!(Wheels::new([90.0, -90.0, 90.0, -90.0], levers, 4).is_none());
+        assert!(Wheels::new([-60.0, 180.0, 60.0, 0.0], levers, 3).is_some());
     }
 }

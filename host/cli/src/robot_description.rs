@@ -103,7 +103,7 @@ pub(crate) fn simulated(asked: Option<&str>) -> Result<RobotSpec, DescriptionErr
     for finding in of.warnings() {
         note!("{finding}");
     }
-    let reference = RobotSpec::REFERENCE;
+    let (reference, slots) = (RobotSpec::REFERENCE, robots::wheel_slots(&of.wheels()));
     Ok(RobotSpec {
         hull: HullSpec {
             radius: of.number("body.radius"),
@@ -113,8 +113,10 @@ pub(crate) fn simulated(asked: Option<&str>) -> Result<RobotSpec, DescriptionErr
         kicker: KickerSpec { chip_degrees: of.number("kicker.chip_degrees"), ..reference.kicker },
         dribbler: DribblerSpec { full_rpm: of.number("dribbler.full_rpm") },
         wheels: WheelSpec {
-            degrees: of.wheel_angles(),
-            distance: of.number("wheels.distance"),
+            count: slots.count,
+            degrees: slots.degrees,
+            levers: slots.levers,
+            distance: slots.distance,
             free_speed: of.number("wheels.free_speed"),
             ..reference.wheels
         },
@@ -192,6 +194,7 @@ mod tests {
             assert_eq!(own.number(path), value, "{path}");
         }
         assert_eq!(own.pulses("kicker.chip_pulses"), spec.kicker.chip_pulses);
-        assert_eq!(own.wheel_angles(), spec.wheels.degrees);
+        let slots = robots::wheel_slots(&own.wheels());
+        assert_eq!((slots.degrees, slots.levers), (spec.wheels.degrees, spec.wheels.levers));
     }
 }

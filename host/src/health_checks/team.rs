@@ -4,6 +4,7 @@
 use std::fmt;
 
 use geometry::{Field, Point};
+use protocol::parts::PartsReport;
 use protocol::version::VersionReport;
 use protocol::{Duration, Instant, RobotId};
 use rules::{Colour, League, Phase};
@@ -72,6 +73,13 @@ pub enum TeamFault {
         /// What it should run.
         expected: VersionReport,
     },
+    /// A robot that suspects parts of itself, or goes on without them.
+    Lame {
+        /// Number on the shell.
+        robot: RobotId,
+        /// What it reports.
+        parts: PartsReport,
+    },
 }
 
 impl TeamFault {
@@ -87,6 +95,7 @@ impl TeamFault {
             Self::Unheard(robot) => format!("unheard {robot}"),
             Self::OtherNumber { shell, radio } => format!("number {shell} {radio}"),
             Self::OtherImage { robot, .. } => format!("image {robot}"),
+            Self::Lame { robot, .. } => format!("parts {robot}"),
         }
     }
 
@@ -101,9 +110,11 @@ impl TeamFault {
     /// The label that heads its line.
     pub(super) const fn heading(&self) -> &'static str {
         match self {
-            Self::Unseen(_) | Self::Unheard(_) | Self::OtherNumber { .. } | Self::OtherImage { .. } => {
-                "robots"
-            }
+            Self::Unseen(_)
+            | Self::Unheard(_)
+            | Self::OtherNumber { .. }
+            | Self::OtherImage { .. }
+            | Self::Lame { .. } => "robots",
             _ => "referee",
         }
     }
@@ -167,6 +178,11 @@ impl fmt::Display for TeamFault {
                     parts.join(" and ")
                 )
             }
+            Self::Lame { robot, parts } => write!(
+                f,
+                "robot {robot} reports: {parts}; it goes on without one wheel or the gyroscope, slowly, and stops without more: \
+                 take it off the field, and look at plugs, cable and driver of that part (docs/boards.md)"
+            ),
             Self::OtherNumber { shell, radio } => write!(
                 f,
                 "cameras see robot {shell}, which radio does not receive, and radio receives number {radio}, which no camera sees, \
@@ -204,6 +220,7 @@ impl TeamChecks {
         faults.extend(host.listener().unknown_command(now).map(|number| TeamFault::Command { number }));
         self.apart(now, host, sees, &mut faults);
         faults.extend(host.radio().present(now).filter_map(|robot| other_image(host, robot)));
+        faults.extend(host.radio().present(now).filter_map(|robot| lame(host, robot)));
         faults
     }
 
@@ -274,6 +291,12 @@ pub(crate) fn other_image(host: &Host, robot: RobotId) -> Option<TeamFault> {
     let (expected, runs) = (host.settings().expected?, host.quality(robot)?.version()?);
     runs.differences(&expected).next()?;
     Some(TeamFault::OtherImage { robot, runs, expected })
+}
+
+/// What a robot reports of its parts, where something speaks against one.
+pub(crate) fn lame(host: &Host, robot: RobotId) -> Option<TeamFault> {
+    let parts = host.quality(robot)?.parts();
+    (!parts.is_ok()).then_some(TeamFault::Lame { robot, parts })
 }
 
 /// Whether it holds, and has for [`APART_AFTER`].

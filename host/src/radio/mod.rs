@@ -30,6 +30,7 @@ use protocol::frame::{Audience, Frame, Refusal, Sender, TeamKey};
 use protocol::host::{DriveLimits, HostCommand, HostMessage, PARTS_MAX, Telemetry};
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
+use protocol::parts::PartsReport;
 use protocol::team::{Beacon, TeamMessage};
 use protocol::version::VersionReport;
 use protocol::{Duration, Instant, RobotId, TeamId};
@@ -129,6 +130,8 @@ pub enum RadioReceived {
     Decision(RobotId, DecisionPart),
     /// What a robot runs, to the host.
     Version(RobotId, VersionReport),
+    /// Which of its parts work, to the host.
+    Parts(RobotId, PartsReport),
 }
 
 /// The host's radio: queue of frames, links to robots, refusals.
@@ -251,6 +254,12 @@ impl Radio {
                 quality.receive(now, packet.len(), frame.epoch, frame.counter);
                 quality.report_version(report);
                 return Ok(RadioReceived::Version(self.settings.numbers.shell(robot), report));
+            }
+            Opened::Parts(robot, report) => {
+                let (frame, quality) = (frame?, &mut self.robots[robot.index()]);
+                quality.receive(now, packet.len(), frame.epoch, frame.counter);
+                quality.report_parts(report);
+                return Ok(RadioReceived::Parts(self.settings.numbers.shell(robot), report));
             }
             Opened::Unauthenticated(robot, telemetry) => {
                 self.refusals.report(now, robot, &telemetry);

@@ -14,6 +14,7 @@
 use std::fmt::Write as _;
 
 use protocol::host::{Condition, Telemetry};
+use protocol::parts::PartsReport;
 use protocol::version::VersionReport;
 use protocol::{Duration, Instant, RobotId};
 
@@ -36,6 +37,7 @@ pub struct Quality {
     welcomed: Option<Instant>,
     lives: u32,
     version: Option<VersionReport>,
+    parts: PartsReport,
     trip: Counters,
     down: Share,
     up: Share,
@@ -165,6 +167,15 @@ impl Quality {
         self.version
     }
 
+    /// Which of its parts work, as it has reported since it booted last; all where it reported none.
+    pub fn parts(&self) -> PartsReport {
+        self.parts
+    }
+
+    pub(super) fn report_parts(&mut self, report: PartsReport) {
+        self.parts = report;
+    }
+
     pub(super) fn report_version(&mut self, report: VersionReport) {
         self.version = Some(report);
     }
@@ -197,6 +208,7 @@ impl Quality {
                 *session = Some(Session { epoch, counter, since: now });
                 self.lives = self.lives.saturating_add(1);
                 (self.telemetry, self.start_up, self.version) = (None, None, None);
+                self.parts = PartsReport::default();
                 self.up.came += 1;
             }
         }

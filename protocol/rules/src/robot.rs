@@ -167,14 +167,20 @@ pub struct DribblerSpec {
     pub full_rpm: f32,
 }
 
-/// Four wheels and their speed control.
+/// Three or four wheels and their speed control; of three the last place stays empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelSpec {
+    /// Number of wheels, 3 or 4.
+    pub count: u8,
     /// Positions of the wheels, degrees counter-clockwise from the front: front right, back right, back left,
-    /// front left.
+    /// front left. Of a wheel that is not tangential that of the tangential one with the same direction.
     pub degrees: [f32; 4],
-    /// From the robot's centre to a wheel, m.
+    /// Speed of each rim for a turn of 1 rad/s, m/s: of a tangential wheel its distance from the centre, m.
+    pub levers: [f32; 4],
+    /// From the robot's centre to the farthest wheel, m.
     pub distance: f32,
+    /// The board's motor output, 0 to 3, that drives each wheel.
+    pub outputs: [u8; 4],
     /// Radius of a wheel, m.
     pub radius: f32,
     /// Counts of the encoder for a turn of the wheel; negative where it counts down when the wheel turns the

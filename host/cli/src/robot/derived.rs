@@ -13,13 +13,14 @@ pub(super) type Row = (&'static str, f32, &'static str);
 
 /// Quantities that follow from the description.
 pub(super) fn rows(of: &Description) -> Vec<Row> {
-    let degrees = of.wheel_angles();
-    let [distance, radius] = [of.number("wheels.distance"), of.number("wheels.radius")];
+    let (own, radius) = (of.wheels(), of.number("wheels.radius"));
+    let slots = robots::wheel_slots(&own);
     let [free, rim] = [of.number("wheels.free_speed"), of.number("wheels.rim_max")];
-    let wheels = Wheels { angles: degrees.map(Angle::degrees), distance };
+    let driven = std::array::from_fn(|wheel| wheel < own.len());
+    let wheels = Wheels { angles: slots.degrees.map(Angle::degrees), levers: slots.levers, driven };
     let counts = 4.0 * of.number("wheels.encoder_lines") * of.number("wheels.encoder_gear").abs();
     let mut rows = vec![
-        ("wheels, condition of the matrix (1 is even)", robots::condition(degrees) as f32, ""),
+        ("wheels, condition of the matrix (1 is even)", robots::condition(&own) as f32, ""),
         ("wheel at free speed", 60.0 * free / (2.0 * PI * radius), "rpm"),
         ("encoder", counts / (2.0 * PI * radius), "counts/m"),
         ("longest drive that a counter of 16 bits measures", COUNTER_MAX * 2.0 * PI * radius / counts, "m"),
@@ -38,7 +39,7 @@ pub(super) fn rows(of: &Description) -> Vec<Row> {
     let [speed, braking] = [of.number("plan.speed"), of.number("plan.braking")];
     let plan = FreeLimits { speed, acceleration: of.number("plan.acceleration"), braking };
     let from = Point::<Field>::new(0.0, 0.0);
-    rows.push(("top turning rate, by the rims", rim / distance, "rad/s"));
+    rows.push(("top turning rate, by the rims", rim / slots.levers.into_iter().fold(0.0, f32::max), "rad/s"));
     rows.push(("time to stop from plan.speed", speed / braking, "s"));
     rows.push(("distance to stop from plan.speed", speed * speed / (2.0 * braking), "m"));
     rows.push((

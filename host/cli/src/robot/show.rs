@@ -64,7 +64,7 @@ fn written(value: &Value) -> String {
     match value {
         Value::Number(number) => number.to_string(),
         Value::Whole(number) => number.to_string(),
-        Value::Angles(angles) => format!("{angles:?}"),
+        Value::Wheels(list) => format!("{list:?}"),
         Value::Pulses(pulses) => {
             let pairs: Vec<_> = pulses.iter().map(|(speed, micros)| format!("{speed} at {micros}")).collect();
             pairs.join(", ")
@@ -78,7 +78,7 @@ fn as_json(source: &str, of: &Description) -> Json {
         // By the shortest text that reads as the same number.
         Value::Number(number) => json!(number.to_string().parse::<f64>().unwrap_or(f64::NAN)),
         Value::Whole(number) => json!(number),
-        Value::Angles(angles) => json!(angles),
+        Value::Wheels(list) => json!(list),
         Value::Pulses(pulses) => json!(pulses),
         Value::Text(text) => json!(text),
     };
