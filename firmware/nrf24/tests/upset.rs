@@ -11,9 +11,9 @@ use nrf24_model::Faults;
 const SILENCE_MAX: u64 = 100_000;
 
 /// Registers of the chip that can be written, events apart (PS 9.1).
-const REGISTERS: [u8; 24] = [
+const REGISTERS: [u8; 22] = [
     0x00, 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x0a, 0x0b, 0x0c, 0x0d, 0x0e, 0x0f, 0x10, 0x11, 0x12, 0x13,
-    0x14, 0x15, 0x16, 0x1c, 0x1d, 0x07, 0x08,
+    0x14, 0x15, 0x16, 0x1c, 0x1d,
 ];
 
 /// A team of six that plays until 0.5 s after the upset.
@@ -27,16 +27,23 @@ fn play(rate: Rate, loss: f32, upset: Option<Upset>) -> Outcome {
 
 #[test]
 fn every_register_upset_at_robot_or_base_costs_100_ms_of_silence_at_most() {
-    let mut restarts = 0;
+    let (mut restarts, mut longest) = (0, [0; 2]);
     for register in REGISTERS {
-        for (at_base, mask) in [(false, 0x3f), (true, 0x3f), (false, 0x01), (true, 0x01)] {
+        for (at_base, mask, rate) in [
+            (false, 0x3f, Rate::Mbps2),
+            (true, 0x3f, Rate::Mbps2),
+            (false, 0x01, Rate::Mbps1),
+            (true, 0x01, Rate::Mbps1),
+        ] {
             let kind = UpsetKind::Bits { register, mask };
-            let outcome = play(Rate::Mbps2, 0.0, Some(Upset { at_base, kind }));
+            let outcome = play(rate, 0.0, Some(Upset { at_base, kind }));
             let gaps = outcome.longest_gap;
+            longest = [0, 1].map(|way| gaps[way].max(longest[way]));
             assert!(gaps.iter().all(|gap| *gap <= SILENCE_MAX), "{register:#x}, {at_base}, {mask}: {gaps:?}");
             restarts += outcome.restarts;
         }
     }
+    println!("longest silence at a robot and at the host: {longest:?} µs; {restarts} restarts");
     // Most upsets are of bits that were set, so that the chip had to be set up again.
     assert!(restarts > 50, "{restarts}");
 }

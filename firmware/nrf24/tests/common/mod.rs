@@ -44,8 +44,8 @@ pub(crate) enum UpsetKind {
     Supply { away: u64 },
 }
 
-/// Time of the upset, µs: all robots are found.
-pub(crate) const UPSET_AT: u64 = 700_000;
+/// Time of the upset, µs: all robots are found, and the registers were just read back.
+pub(crate) const UPSET_AT: u64 = 702_000;
 
 impl Plan {
     /// One team at 100 Hz for ten seconds.
