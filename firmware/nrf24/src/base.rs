@@ -10,7 +10,7 @@ use protocol::{Duration, Instant, RobotId};
 use rf24::StatusFlags;
 use rf24::radio::prelude::{EsbFifo, EsbRadio, EsbStatus};
 
-use crate::chip::{Channel, Fault, Lines};
+use crate::chip::{CHECK_EVERY, Channel, Fault, Lines};
 use crate::fragment::{Assembler, Cutter, Fragments, Joined, NotSent, Payload, question};
 
 /// Counts of frames that a base station's radio sent and dropped.
@@ -86,6 +86,8 @@ pub struct Base<S, C, D> {
     /// The number that is looked for next, and when the last was.
     search: (u8, Instant),
     checked: Instant,
+    /// False while the chip is not set up to the end: its supply dipped in the middle of it.
+    is_ready: bool,
     counts: BaseCounts,
 }
 
@@ -111,6 +113,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
             repeats: 0,
             search: (0, now),
             checked: now,
+            is_ready: true,
             counts: BaseCounts::default(),
         };
         radio.lines.start(channel)?;
@@ -133,12 +136,15 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
     /// [`Base::send`], and every [`crate::SERVE_EVERY`] at least.
     pub fn poll(&mut self, now: Instant) -> Result<Option<Packet>, Fault> {
         let stands = self.busy.is_some_and(|(_, since)| now.since(since) > SENDING_TIME_MAX);
-        if stands || (self.busy.is_none() && now.since(self.checked) >= CHECK_EVERY) {
+        // While it sends too: under load there is always something in the chip.
+        if stands || now.since(self.checked) >= CHECK_EVERY {
             self.checked = now;
-            if stands || !self.lines.is_set()? {
+            if stands || !self.is_ready || !self.lines.is_set()? {
                 self.counts.restarts = self.counts.restarts.saturating_add(1);
                 (self.busy, self.sending, self.repeats) = (None, None, 0);
+                self.is_ready = false;
                 self.lines.start(self.channel)?;
+                self.is_ready = true;
             }
         }
         // Before anything arrives: a packet and the payload in its acknowledgement are one event.
@@ -347,5 +353,3 @@ const ASSEMBLY_TIME_MAX: Duration = Duration::millis(60);
 /// Time after which a chip that sends stands still: three payloads without repeats, or one with all, take 2
 /// ms.
 const SENDING_TIME_MAX: Duration = Duration::millis(20);
-/// Period in which the chip's registers are read back: 56 bytes on the bus and nothing on the air.
-const CHECK_EVERY: Duration = Duration::millis(100);

@@ -4,7 +4,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorKind as PinError, OutputPin};
 use embedded_hal::spi::{ErrorKind as SpiError, SpiDevice};
 use protocol::frame::VERSION;
-use protocol::{RobotId, TeamId};
+use protocol::{Duration, RobotId, TeamId};
 use rf24::radio::prelude::{
     EsbAutoAck, EsbDataRate, EsbFifo, EsbInit, EsbPayloadLength, EsbPipe, EsbRadio, EsbStatus,
 };
@@ -166,7 +166,8 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
             }
             Err(error) => return Err(error.into()),
         }
-        Ok(Some((pipe, payload)))
+        // No payload is empty: a chip without its supply seems to have one always.
+        Ok((!payload.is_empty()).then_some((pipe, payload)))
     }
 
     /// Sets the number of repetitions of a packet without acknowledgement.
@@ -178,3 +179,6 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
 /// 500 µs from the end of a packet to its repeat: long enough for an acknowledgement of 32 bytes at 1 and at
 /// 2 Mbit/s (PS 9.1, SETUP_RETR), in steps of 250 µs, less one.
 const REPEAT_DELAY: u8 = 1;
+/// Period in which the chip's registers are read back: 56 bytes on the bus, 0.1 ms at 8 MHz, and nothing on
+/// the air. A quarter of the longest silence that an upset may cost, 100 ms.
+pub(crate) const CHECK_EVERY: Duration = Duration::millis(25);

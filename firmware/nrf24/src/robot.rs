@@ -9,7 +9,7 @@ use protocol::{Duration, Instant, RobotId};
 use rf24::StatusFlags;
 use rf24::radio::prelude::{EsbAutoAck, EsbFifo, EsbStatus};
 
-use crate::chip::{Channel, Fault, Lines};
+use crate::chip::{CHECK_EVERY, Channel, Fault, Lines};
 use crate::fragment::{Assembler, Cutter, Fragments, Joined, NotSent};
 
 /// Counts of frames that a robot's radio dropped, by cause.
@@ -41,6 +41,8 @@ pub struct Robot<S, C, D> {
     /// Time of the last packet to this robot.
     asked: Instant,
     checked: Instant,
+    /// False while the chip is not set up to the end: its supply dipped in the middle of it.
+    is_ready: bool,
     counts: RobotCounts,
 }
 
@@ -66,6 +68,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
             given: 0,
             asked: now,
             checked: now,
+            is_ready: false,
             counts: RobotCounts::default(),
         };
         radio.set_up()?;
@@ -73,10 +76,13 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
     }
 
     fn set_up(&mut self) -> Result<(), Fault> {
+        self.is_ready = false;
         self.lines.start(self.channel)?;
         self.lines.open(1, self.channel.robot(self.number))?;
         self.lines.open(2, self.channel.everyone())?;
-        self.lines.listen()
+        self.lines.listen()?;
+        self.is_ready = true;
+        Ok(())
     }
 
     /// Takes a frame to send to the base station; it leaves with the next acknowledgements. `Ok(false)` where
@@ -95,7 +101,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
     pub fn poll(&mut self, now: Instant) -> Result<Option<Packet>, Fault> {
         if now.since(self.checked) >= CHECK_EVERY {
             self.checked = now;
-            if !self.lines.is_set()? {
+            if !self.is_ready || !self.lines.is_set()? {
                 self.counts.restarts = self.counts.restarts.saturating_add(1);
                 self.given = 0;
                 self.set_up()?;
@@ -164,5 +170,3 @@ const WAITING_MAX: usize = 4;
 /// Longest time from a frame's first fragment to its last: four with every repeat take 6 ms; and the base
 /// station sends 32 frames in no less than 30 ms.
 const ASSEMBLY_TIME_MAX: Duration = Duration::millis(8);
-/// Period in which the chip's registers are read back: 56 bytes on the bus and nothing on the air.
-const CHECK_EVERY: Duration = Duration::millis(100);

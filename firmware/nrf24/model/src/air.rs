@@ -105,6 +105,15 @@ struct Flight {
 }
 
 impl Medium {
+    /// A chip's supply goes or comes: its packet on the air breaks off, and it has forgotten everything.
+    pub(crate) fn power(&mut self, index: usize, on: bool) {
+        self.flights.retain(|flight| flight.from != index);
+        let chip = &mut self.chips[index];
+        let (enabled, spent) = (chip.enabled, chip.spent);
+        *chip = Registers::new();
+        (chip.enabled, chip.spent, chip.has_supply) = (enabled, spent, on);
+    }
+
     /// Looks at a chip whose registers or lines changed.
     pub(crate) fn wake(&mut self, index: usize) {
         let now = self.now;

@@ -70,6 +70,7 @@ pub(crate) struct Registers {
     pub(crate) to_send: VecDeque<ToSend>,
     pub(crate) received: VecDeque<(u8, Vec<u8>)>,
     pub(crate) enabled: bool,
+    pub(crate) has_supply: bool,
     pub(crate) spent: u64,
     pub(crate) mode: Mode,
     pub(crate) packet: u8,
@@ -111,6 +112,7 @@ impl Registers {
             to_send: VecDeque::new(),
             received: VecDeque::new(),
             enabled: false,
+            has_supply: true,
             spent: 0,
             mode: Mode::Idle,
             packet: 0,
@@ -227,6 +229,9 @@ impl Registers {
 
     /// A byte each way; the first answer is STATUS (PS 8.3.1).
     pub(crate) fn exchange(&self, exchange: &mut Exchange, byte: u8) -> u8 {
+        if !self.has_supply {
+            return 0;
+        }
         let Some(_command) = exchange.command else {
             exchange.command = Some(byte);
             exchange.answer = match byte {
@@ -255,6 +260,9 @@ impl Registers {
     /// The end of a transaction: now its command takes effect.
     pub(crate) fn deselect(&mut self, exchange: Exchange) {
         let Exchange { command: Some(command), bytes, .. } = exchange else { return };
+        if !self.has_supply {
+            return;
+        }
         match command {
             0x20..0x40 => self.write(command & 0x1f, &bytes),
             0x61 if !bytes.is_empty() => {

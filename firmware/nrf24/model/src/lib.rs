@@ -61,6 +61,12 @@ impl Chip {
         std::mem::take(&mut self.medium.borrow_mut().chips[self.index].spent)
     }
 
+    /// Takes the supply away, or gives it back: without it the chip answers zeros, and afterwards it has
+    /// forgotten everything.
+    pub fn power(&self, on: bool) {
+        self.medium.borrow_mut().power(self.index, on);
+    }
+
     /// A register's first byte, as the chip has it.
     pub fn register(&self, register: u8) -> u8 {
         self.medium.borrow().chips[self.index].register(register)

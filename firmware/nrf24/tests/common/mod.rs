@@ -4,6 +4,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use embedded_hal::spi::SpiDevice;
 use nrf24::{Base, Channel, Rate, Robot, Station};
 use nrf24_model::{Air, AirCounts, Chip, ChipEnable, Faults, Pause, Spi};
 use protocol::frame::{Audience, Frame, Sender, Sessions, TeamKey};
@@ -23,12 +24,42 @@ pub(crate) struct Plan {
     pub(crate) seed: u64,
     /// µs.
     pub(crate) duration: u64,
+    /// What goes wrong with a chip, at [`UPSET_AT`].
+    pub(crate) upset: Option<Upset>,
 }
+
+/// What goes wrong with one chip.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Upset {
+    /// The base station's, or that of robot 3.
+    pub(crate) at_base: bool,
+    pub(crate) kind: UpsetKind,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum UpsetKind {
+    /// These bits of each byte of a register turn.
+    Bits { register: u8, mask: u8 },
+    /// Its supply is away for so long, µs; 0 is a reset.
+    Supply { away: u64 },
+}
+
+/// Time of the upset, µs: all robots are found, and the registers were just read back.
+pub(crate) const UPSET_AT: u64 = 702_000;
 
 impl Plan {
     /// One team at 100 Hz for ten seconds.
     pub(crate) fn one_team(rate: Rate, faults: Faults) -> Self {
-        Self { teams: 1, same_channel: false, rate, period: 10_000, faults, seed: 1, duration: 10_000_000 }
+        Self {
+            teams: 1,
+            same_channel: false,
+            rate,
+            period: 10_000,
+            faults,
+            seed: 1,
+            duration: 10_000_000,
+            upset: None,
+        }
     }
 }
 
@@ -87,6 +118,11 @@ pub(crate) struct Outcome {
     pub(crate) handed_twice: u64,
     /// Longest time in which a robot believed nothing of its host, µs.
     pub(crate) longest_silence: u64,
+    /// Longest time without a frame believed, µs, up to the end of the run: of a robot from the host, of the
+    /// host from a robot.
+    pub(crate) longest_gap: [u64; 2],
+    /// Starts of the base station's chip and the robots' after the first.
+    pub(crate) restarts: u32,
     pub(crate) air: AirCounts,
     pub(crate) late: u32,
 }
@@ -136,6 +172,8 @@ struct Team {
     sent: HashMap<Vec<u8>, (Kind, u64)>,
     news: Vec<bool>,
     station_news: bool,
+    /// Time of the last frame believed, of each robot from the host and of the host from each robot, µs.
+    heard: [[u64; ROBOTS as usize]; 2],
 }
 
 const KEY: TeamKey = TeamKey([7, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
@@ -172,6 +210,26 @@ impl Team {
             sent: HashMap::new(),
             news: vec![false; usize::from(ROBOTS)],
             station_news: false,
+            heard: [[WARM_UP; ROBOTS as usize]; 2],
+        }
+    }
+
+    /// Upsets a chip, once it is time.
+    fn upset(&self, upset: Upset, now: u64) {
+        let chip = if upset.at_base { &self.station.chip } else { &self.robots[3].chip };
+        match upset.kind {
+            UpsetKind::Bits { register, mask } if now == UPSET_AT => {
+                let len = if matches!(register, 0x0a | 0x0b | 0x10) { 5 } else { 1 };
+                let mut bytes = vec![register; 1 + len];
+                chip.spi().transfer_in_place(&mut bytes).unwrap();
+                bytes.iter_mut().skip(1).for_each(|byte| *byte ^= mask);
+                bytes[0] = 0x20 | register;
+                chip.spi().write(&bytes).unwrap();
+            }
+            UpsetKind::Supply { away } if now == UPSET_AT || now == UPSET_AT + away => {
+                chip.power(now == UPSET_AT + away);
+            }
+            _ => {}
         }
     }
 
@@ -210,10 +268,20 @@ pub(crate) fn run(plan: &Plan) -> Outcome {
         air.advance(now * 1_000);
         let counted = now > WARM_UP && now + COOL_DOWN < plan.duration;
         for (number, team) in teams.iter_mut().enumerate() {
+            if let Some(upset) = plan.upset {
+                team.upset(upset, now);
+            }
             traffic(plan, team, now, number as u64 * 3_700, counted, &mut outcome);
             serve(team, now, &mut outcome);
         }
         now += STEP;
+    }
+    for team in &mut teams {
+        for (way, robot) in (0..2).flat_map(|way| (0..usize::from(ROBOTS)).map(move |robot| (way, robot))) {
+            hear(&mut team.heard[way], robot, now, &mut outcome.longest_gap[way]);
+        }
+        let robots = team.robots.iter().map(|robot| robot.end.counts().restarts);
+        outcome.restarts += team.station.end.counts().restarts + robots.sum::<u32>();
     }
     outcome.air = air.counts();
     outcome.late = teams.iter().map(|team| team.station.end.counts().late).sum();
@@ -287,7 +355,8 @@ fn traffic(plan: &Plan, team: &mut Team, now: u64, offset: u64, counted: bool, o
 
 fn serve(team: &mut Team, now: u64, outcome: &mut Outcome) {
     if team.station.is_due(now, team.station_news) {
-        let line = team.station.end.poll(Instant(now)).expect("the chip answers");
+        // A fault is a chip without its supply.
+        let line = team.station.end.poll(Instant(now)).unwrap_or_default();
         team.station.served(now);
         team.station_news = line.is_some();
         let frames: Vec<_> = line.iter().flatten().filter_map(|byte| team.host_line.push(*byte)).collect();
@@ -295,6 +364,7 @@ fn serve(team: &mut Team, now: u64, outcome: &mut Outcome) {
             let key = |sender: RobotId| KEY.of_robot(sender).team;
             if believe(&mut team.at_host, &frame, team.id, key, RobotId::ZERO, outcome) {
                 settle(&team.sent, &frame, now, outcome);
+                hear(&mut team.heard[1], usize::from(frame[2]), now, &mut outcome.longest_gap[1]);
                 if team.sent.get(covered(&frame)).is_some_and(|(kind, _)| *kind == Kind::Beacon) {
                     team.relay.push((now + 500, frame.to_vec()));
                 }
@@ -305,7 +375,7 @@ fn serve(team: &mut Team, now: u64, outcome: &mut Outcome) {
         if !node.is_due(now, team.news[number]) {
             continue;
         }
-        let frame = node.end.poll(Instant(now)).expect("the chip answers");
+        let frame = node.end.poll(Instant(now)).unwrap_or_default();
         node.served(now);
         team.news[number] = frame.is_some();
         let Some(frame) = frame else { continue };
@@ -324,10 +394,17 @@ fn serve(team: &mut Team, now: u64, outcome: &mut Outcome) {
                         outcome.longest_silence.max(now - believer.heard_host.max(WARM_UP));
                 }
                 believer.heard_host = now;
+                hear(&mut team.heard[0], number, now, &mut outcome.longest_gap[0]);
             }
             settle(&team.sent, &frame, now, outcome);
         }
     }
+}
+
+/// A frame was believed, or the run is over.
+fn hear(heard: &mut [u64], robot: usize, now: u64, longest: &mut u64) {
+    let since = std::mem::replace(&mut heard[robot], now.max(WARM_UP));
+    *longest = (*longest).max(now.saturating_sub(since));
 }
 
 /// What a receiver's tag proves: in a frame to several, the tags of the others are not its own business.

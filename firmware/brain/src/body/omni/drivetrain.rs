@@ -13,6 +13,7 @@ use protocol::robot_io::{OmniKick, WHEELED_STEP};
 use rules::limits::ROBOT_RADIUS;
 use rules::{Phase, RobotSpec, RuleRole, Side};
 
+use super::bodies::short_of_bodies;
 use super::surroundings::Surroundings;
 use super::{Drive, DriveMode};
 use crate::belief::Belief;
@@ -285,36 +286,6 @@ impl Drivetrain {
     }
 }
 
-/// `velocity`, slowed towards robots that it would reach too fast: paths take them to keep their velocity,
-/// and both may turn towards each other before either has noticed.
-fn short_of_bodies(belief: &Belief, mut velocity: Vector<Field>) -> Vector<Field> {
-    for other in &belief.others {
-        let off = other.pose.position - belief.pose.position;
-        let square = off.dot(off);
-        if !(f32::MIN_POSITIVE..=NOTICES * NOTICES).contains(&square) {
-            continue;
-        }
-        // One that is passed beside is no obstacle ahead.
-        let relative = velocity - other.velocity;
-        let across = off.cross(relative);
-        if across * across > PASSES * PASSES * relative.dot(relative) {
-            continue;
-        }
-        let distance = math::sqrt(square);
-        let along = off * (1.0 / distance);
-        let (own, theirs) = (velocity.dot(along), other.velocity.dot(along));
-        let closing = own - theirs;
-        let gap = distance - 2.0 * ROBOT_RADIUS - CONTROL_DELAY_S * closing;
-        let most = TOUCHES_AT + math::sqrt(2.0 * BOTH_BRAKE * math::max(gap, 0.0));
-        // Who comes at a robot that stands has to slow down itself.
-        let kept = math::max(most + theirs, 0.0);
-        if own > kept {
-            velocity += along * (kept - own);
-        }
-    }
-    velocity
-}
-
 /// Instructions with which a path among this many obstacles is searched.
 fn search_effort(obstacles: usize) -> u32 {
     avoid::effort_least(obstacles) + EFFORT_OF_SEARCH
@@ -325,16 +296,6 @@ fn half_turn(angular: f32, step: f32) -> Angle {
     Angle::new(0.5 * (angular * step))
 }
 
-/// Robots within this distance are slowed for, m: two that close at 3 m/s are a third of a second apart.
-const NOTICES: f32 = 1.0;
-/// Centres that pass this far apart do not touch, m: two radii, and what positions and directions err by.
-const PASSES: f32 = 2.0 * ROBOT_RADIUS + 0.05;
-/// Time until an order for the wheels shows, s: cameras, radio and wheels are 0.05 to 0.15 s late.
-const CONTROL_DELAY_S: f32 = 0.12;
-/// Bodies touch no faster than this, m/s: a crash is a foul above 1.5 (rules), less the errors of velocities.
-const TOUCHES_AT: f32 = 1.0;
-/// Deceleration down to that, m/s²: what weak brakes do (estimate).
-const BOTH_BRAKE: f32 = 2.0;
 /// Number of steps for which a path is followed without planning again, as in a flood of packets that take
 /// the whole step: 0.2 s, the age of a command that is too old.
 const PATH_AGE_MAX: u8 = 20;
@@ -422,7 +383,6 @@ mod tests {
     extern crate std;
 
     use super::*;
-    use crate::belief::Other;
     use crate::skills::wheels::testing::belief;
 
     /// How far off its aim a robot still swings 1.2 s after the beginning of a quarter turn, degrees, with
@@ -491,27 +451,5 @@ mod tests {
         }
         let beyond = place.x() - b.pose.position.x();
         assert!(beyond < 0.12, "{beyond} m beyond its place");
-    }
-
-    /// The speed towards an opponent `apart` m ahead that comes with `theirs` m/s, of a robot that wants 3.
-    fn towards(apart: f32, theirs: f32) -> f32 {
-        let mut b = belief((0.0, 0.0, 0.0), (-2.0, 0.0));
-        let pose = geometry::Pose::from_mm_deg(apart * 1000.0, 0.0, 0.0);
-        let _ = b.others.push(Other {
-            side: Side::Theirs,
-            id: protocol::RobotId::ZERO,
-            pose,
-            velocity: Vector::new(-theirs, 0.0),
-        });
-        short_of_bodies(&b, Vector::new(3.0, 0.5)).x()
-    }
-
-    #[test]
-    fn a_robot_slows_before_another_and_not_for_one_that_it_follows() {
-        assert_eq!(towards(1.2, 0.0), 3.0, "far away");
-        assert!(towards(0.6, 0.0) < 2.1 && towards(0.2, 0.0) <= 1.0, "{}", towards(0.6, 0.0));
-        assert!(towards(0.6, 2.0) < 0.1, "head on it brakes: {}", towards(0.6, 2.0));
-        assert!(towards(0.3, 3.0) >= 0.0, "and does not flee");
-        assert_eq!(towards(0.4, -3.0), 3.0, "it follows as fast as the other drives");
     }
 }

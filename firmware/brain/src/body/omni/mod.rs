@@ -3,6 +3,7 @@
 //! [`Drivetrain`] turns intents into a body's motion, [`surroundings`] lists what it keeps out of, the skills
 //! are in [`skills::wheels`](crate::skills::wheels).
 
+mod bodies;
 mod drivetrain;
 pub mod surroundings;
 
