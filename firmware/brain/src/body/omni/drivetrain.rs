@@ -10,7 +10,6 @@ use motion::avoid::{self, Carried, Course, Detour, Restraint, RouteVerdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::Instant;
 use protocol::robot_io::{OmniKick, WHEELED_STEP};
-use rules::limits::ROBOT_RADIUS;
 use rules::{Phase, RobotSpec, RuleRole, Side};
 
 use super::bodies::short_of_bodies;
