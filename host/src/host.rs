@@ -218,7 +218,7 @@ impl Host {
             let _verdict = self.geometry.receive(data);
         }
         if let Some(frame) = packet.detection.as_mut().filter(|_| !self.settings.practice.is_all()) {
-            self.settings.practice.filter(frame);
+            self.settings.practice.filter(frame, self.settings.us);
         }
         let received = self.tracker.handle(&packet, now);
         let changes =

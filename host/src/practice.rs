@@ -5,6 +5,7 @@ use std::fmt;
 
 use protocol::host::Directive;
 use protocol::quantized::{WirePoint, whole_mm};
+use rules::Colour;
 use serde::{Deserialize, Serialize};
 use ssl::vision::DetectionFrame;
 
@@ -122,13 +123,27 @@ impl Practice {
         self.holds(geometry::Point::new(x * 0.001, y * 0.001))
     }
 
-    /// Takes out of a camera frame what is not practised on.
-    pub fn filter(&self, frame: &mut DetectionFrame) {
+    /// Takes out of a camera frame what is not practised on, but for robots of `ours` a little outside: one
+    /// that is not seen gets no order, and would never come back.
+    pub fn filter(&self, frame: &mut DetectionFrame, ours: Colour) {
         let seen = frame.camera_id >= u16::BITS || self.cameras & 1 << frame.camera_id == 0;
         frame.balls.retain(|ball| seen && self.holds_mm(ball.x, ball.y));
-        for robots in [&mut frame.robots_blue, &mut frame.robots_yellow] {
-            robots.retain(|robot| seen && self.holds_mm(robot.x, robot.y));
+        for (colour, robots) in
+            [(Colour::Blue, &mut frame.robots_blue), (Colour::Yellow, &mut frame.robots_yellow)]
+        {
+            robots.retain(|robot| {
+                seen && (self.holds_mm(robot.x, robot.y) || colour == ours && self.is_near(robot.x, robot.y))
+            });
         }
+    }
+
+    /// Whether a place, mm, is within [`OURS_BEYOND_MAX_MM`] of one that is practised on.
+    fn is_near(&self, x: f32, y: f32) -> bool {
+        let at = WirePoint { x: x as i16, y: y as i16 };
+        let mut inside = at;
+        self.bound(&mut inside);
+        let (dx, dy) = (i32::from(at.x) - i32::from(inside.x), i32::from(at.y) - i32::from(inside.y));
+        dx * dx + dy * dy <= OURS_BEYOND_MAX_MM * OURS_BEYOND_MAX_MM
     }
 
     /// The directive with its places moved to the nearest ones that are practised on. Cases are not played: a
@@ -176,6 +191,9 @@ impl Practice {
     }
 }
 
+/// A robot of ours this far outside has slid or was pushed there, mm: from 3 m/s it stops in 1.3 m. Farther
+/// away it is another team's that practises beside us in our colour.
+const OURS_BEYOND_MAX_MM: i32 = 1500;
 /// No field reaches farther, mm.
 const FAR_MM: i16 = 20_000;
 
@@ -185,7 +203,7 @@ mod tests {
     use protocol::RobotId;
     use protocol::host::KickOrder;
     use protocol::quantized::WirePose;
-    use ssl::vision::DetectionBall;
+    use ssl::vision::{DetectionBall, DetectionRobot};
 
     use super::*;
 
@@ -214,8 +232,13 @@ mod tests {
         for (camera_id, left) in [(0, 1), (2, 0), (20, 1)] {
             let balls = vec![ball(-10.0), ball(10.0), ball(1500.0)];
             let mut frame = DetectionFrame { camera_id, balls, ..DetectionFrame::default() };
-            half.filter(&mut frame);
+            let robot = |x: f32| DetectionRobot { x, ..DetectionRobot::default() };
+            frame.robots_blue = vec![robot(-1600.0), robot(-1400.0), robot(500.0)];
+            frame.robots_yellow.clone_from(&frame.robots_blue);
+            half.filter(&mut frame, Colour::Blue);
             assert_eq!(frame.balls.len(), left, "camera {camera_id}");
+            let robots = (frame.robots_blue.len(), frame.robots_yellow.len());
+            assert_eq!(robots, (2 * left, left), "ours a little outside, theirs not: camera {camera_id}");
         }
         assert_eq!(Practice::parse(&half.words()), Ok(half));
     }
