@@ -241,8 +241,10 @@ fn random_radio_gaps_of_40_to_150_ms_stop_robots_for_at_most_5_percent_of_play()
 fn with_bursts_of_any_length_robots_go_on_as_soon_as_the_silence_rules_let_them() {
     let all = three_matches(Fails::Bursts);
     let not_held = (all.still - all.still_held) / all.ordered;
-    // A burst of half a second is a silence, after which a robot is armed again.
-    assert!(all.share() <= 0.05 && not_held <= 0.02 && all.longest <= 1.2, "{all:?}");
+    // While the rules hold it a robot slows down, and stands for less than half of that time, however many
+    // bursts there are. One of half a second is a silence, after which a robot is armed again.
+    let held = all.still_held / all.held;
+    assert!(held <= 0.5 && not_held <= 0.02 && all.longest <= 1.2, "{all:?}");
 }
 
 /// Three matches of 60 s: the time in which robots have an order to move depends on the match.
