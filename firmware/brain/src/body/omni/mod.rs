@@ -88,7 +88,7 @@ impl Drive {
         Self { mode: DriveMode::Holding, dribbler: 1.0, ..Self::avoiding(to, face) }
     }
 
-    /// Deceleration of a robot that touches something otherwise, m/s²: all that wheels hold, without the ball.
+    /// Deceleration of a robot that touches something otherwise, m/s²: what wheels hold, without the ball.
     fn hardest_braking(&self) -> f32 {
         match self.mode {
             DriveMode::Holding => RobotSpec::OURS.plan_holding.braking,
