@@ -27,7 +27,7 @@ fn a_team_that_practises_on_its_half_stays_near_it_and_knows_no_ball_beyond() {
         let farthest = blue.map(|robot| robot.pose.position.x()).fold(f32::INFINITY, f32::min);
         worst = worst.min(farthest);
     }
-    // Ordered places are inside; around the ball and others a robot may leave for a moment (0.75 m here).
+    // Ordered places are inside; around the ball and others a robot may leave for a moment (0.81 m here).
     assert!(worst > -1.0, "a robot at x = {worst} m");
     assert!(ran > 500 && beyond > 200, "{ran} ticks of play, the ball beyond in {beyond}");
 }
