@@ -8,7 +8,7 @@ use protocol::{Duration, Instant, RobotId, Who};
 use serde::Serialize;
 
 use crate::Host;
-use crate::health_checks::{lame, other_image};
+use crate::health_checks::{failed_parts, other_image};
 use crate::radio::Quality;
 
 /// A camera is listed for this time after it has seen the robot last; the last one stays.
@@ -73,7 +73,7 @@ fn robot(host: &Host, shell: RobotId, now: Instant) -> Option<RobotGlance> {
         faults: quality.map(|quality| faults(quality, now)).unwrap_or_default(),
         version: version.map(|report| report.to_string()),
         case_base: host.beacon(shell).map(|beacon| format!("{:08x}", beacon.case_base)),
-        wrong: [other_image(host, shell), lame(host, shell)]
+        wrong: [other_image(host, shell), failed_parts(host, shell)]
             .into_iter()
             .flatten()
             .map(|fault| fault.to_string())

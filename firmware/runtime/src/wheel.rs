@@ -25,7 +25,7 @@ pub struct Lost {
 
 impl Lost {
     /// Whether wheels are lost.
-    pub const fn is_lame(self) -> bool {
+    pub const fn misses_a_wheel(self) -> bool {
         self.motors | self.encoders != 0
     }
 
@@ -110,7 +110,8 @@ impl Control {
             (Some(_), Some(ActuatorFrame::Omni { wheels, dribbler, kick }))
                 if is_finite(&wheels, dribbler) =>
             {
-                self.target = if self.lost.is_lame() { limped(self.target, wheels) } else { wheels };
+                self.target =
+                    if self.lost.misses_a_wheel() { slowed_target(self.target, wheels) } else { wheels };
                 (dribbler, kick)
             }
             // The brain is silent, or has sent NaN: brakes to a stop as fast as wheels hold the field
@@ -178,13 +179,14 @@ pub(crate) fn without(wheel: usize) -> Omni {
 
 /// The target speeds a step later of a robot that goes on with three wheels. All change in the same
 /// proportion: the body's motion stays on its way.
-fn limped(from: [f32; WHEELS], ordered: [f32; WHEELS]) -> [f32; WHEELS] {
-    let fastest = ordered.iter().fold(LAME_RIM_MAX, |most, rim| most.max(rim.abs()));
-    let to = ordered.map(|rim| rim * (LAME_RIM_MAX / fastest));
-    let largest = from.iter().zip(to).fold(LAME_STEP, |most, (from, to)| most.max((to - from).abs()));
+fn slowed_target(from: [f32; WHEELS], ordered: [f32; WHEELS]) -> [f32; WHEELS] {
+    let fastest = ordered.iter().fold(RIM_WITH_THREE_MAX, |most, rim| most.max(rim.abs()));
+    let to = ordered.map(|rim| rim * (RIM_WITH_THREE_MAX / fastest));
+    let largest =
+        from.iter().zip(to).fold(RIM_CHANGE_WITH_THREE, |most, (from, to)| most.max((to - from).abs()));
     let mut next = from;
     for (rim, to) in next.iter_mut().zip(to) {
-        *rim += (to - *rim) * (LAME_STEP / largest);
+        *rim += (to - *rim) * (RIM_CHANGE_WITH_THREE / largest);
     }
     next
 }
@@ -202,10 +204,10 @@ fn is_finite(wheels: &[f32; WHEELS], dribbler: f32) -> bool {
 /// loop for a silent brain.
 pub const ORDERS_AGE_MAX: Duration = Duration::millis(50);
 /// Fastest rim of a robot that goes on with three wheels, m/s: it stops from there within 0.15 m.
-const LAME_RIM_MAX: f32 = 1.0;
+const RIM_WITH_THREE_MAX: f32 = 1.0;
 /// Change of its rims in a step, m/s: less than four wheels brake with, and enough for the brain's plans to
 /// hold (with half of it robots circle round their places).
-const LAME_STEP: f32 = 0.7 * BRAKE_PER_STEP;
+const RIM_CHANGE_WITH_THREE: f32 = 0.7 * BRAKE_PER_STEP;
 const SPEC: WheelSpec = RobotSpec::OURS.wheels;
 /// Control steps in a second.
 const STEPS_PER_S: f32 = (1_000_000 / CONTROL_PERIOD.0) as f32;

@@ -53,7 +53,7 @@ pub use side::{SideEvidence, WrongSide};
 pub use stall::Stall;
 pub use strategy::StrategyFault;
 pub use team::TeamFault;
-pub(crate) use team::{lame, other_image};
+pub(crate) use team::{failed_parts, other_image};
 pub use vision::CameraFault;
 
 /// Something that does not fit.
@@ -131,7 +131,7 @@ impl Fault {
             Self::Team(TeamFault::Unheard(_)) => "unheard robot",
             Self::Team(TeamFault::OtherNumber { .. }) => "other number",
             Self::Team(TeamFault::OtherImage { .. }) => "other image",
-            Self::Team(TeamFault::Lame { .. }) => "broken part",
+            Self::Team(TeamFault::FailedParts { .. }) => "broken part",
             Self::Strategy(StrategyFault::Refused { .. }) => "refused answers",
             Self::Strategy(StrategyFault::Silent { .. }) => "silent strategy",
             Self::Referee(_) => "referee's sources",

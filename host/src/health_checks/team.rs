@@ -74,7 +74,7 @@ pub enum TeamFault {
         expected: VersionReport,
     },
     /// A robot that suspects parts of itself, or goes on without them.
-    Lame {
+    FailedParts {
         /// Number on the shell.
         robot: RobotId,
         /// What it reports.
@@ -95,7 +95,7 @@ impl TeamFault {
             Self::Unheard(robot) => format!("unheard {robot}"),
             Self::OtherNumber { shell, radio } => format!("number {shell} {radio}"),
             Self::OtherImage { robot, .. } => format!("image {robot}"),
-            Self::Lame { robot, .. } => format!("parts {robot}"),
+            Self::FailedParts { robot, .. } => format!("parts {robot}"),
         }
     }
 
@@ -114,7 +114,7 @@ impl TeamFault {
             | Self::Unheard(_)
             | Self::OtherNumber { .. }
             | Self::OtherImage { .. }
-            | Self::Lame { .. } => "robots",
+            | Self::FailedParts { .. } => "robots",
             _ => "referee",
         }
     }
@@ -178,7 +178,7 @@ impl fmt::Display for TeamFault {
                     parts.join(" and ")
                 )
             }
-            Self::Lame { robot, parts } => write!(
+            Self::FailedParts { robot, parts } => write!(
                 f,
                 "robot {robot} reports: {parts}; it goes on without one wheel or the gyroscope, slowly, and stops without more: \
                  take it off the field, and look at plugs, cable and driver of that part (docs/boards.md)"
@@ -220,7 +220,7 @@ impl TeamChecks {
         faults.extend(host.listener().unknown_command(now).map(|number| TeamFault::Command { number }));
         self.apart(now, host, sees, &mut faults);
         faults.extend(host.radio().present(now).filter_map(|robot| other_image(host, robot)));
-        faults.extend(host.radio().present(now).filter_map(|robot| lame(host, robot)));
+        faults.extend(host.radio().present(now).filter_map(|robot| failed_parts(host, robot)));
         faults
     }
 
@@ -294,9 +294,9 @@ pub(crate) fn other_image(host: &Host, robot: RobotId) -> Option<TeamFault> {
 }
 
 /// What a robot reports of its parts, where something speaks against one.
-pub(crate) fn lame(host: &Host, robot: RobotId) -> Option<TeamFault> {
+pub(crate) fn failed_parts(host: &Host, robot: RobotId) -> Option<TeamFault> {
     let parts = host.quality(robot)?.parts();
-    (!parts.is_ok()).then_some(TeamFault::Lame { robot, parts })
+    (!parts.is_ok()).then_some(TeamFault::FailedParts { robot, parts })
 }
 
 /// Whether it holds, and has for [`APART_AFTER`].

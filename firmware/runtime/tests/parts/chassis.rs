@@ -86,7 +86,7 @@ impl Chassis {
         }
     }
 
-    /// Breaks a part, or mends it.
+    /// Breaks a part, or repairs it.
     pub(crate) fn plant(&mut self, fault: Option<PartFault>) {
         self.fault = fault;
     }
@@ -179,7 +179,7 @@ const STALL: f32 = 30.0;
 const MOTOR: f32 = STALL / FREE_SPEED;
 /// Mass of wheel and rotor at the rim, kg.
 const RIM_MASS: f32 = 0.3;
-/// Largest force of a wheel on the carpet, N: friction of 0.8 under a quarter of the weight.
+/// Largest force of a wheel on the field surface, N: friction of 0.8 under a quarter of the weight.
 const GRIP: f32 = 0.8 * MASS * 9.81 / 4.0;
 /// Force for each m/s of slip.
 const STIFFNESS: f32 = 200.0;

@@ -138,11 +138,11 @@ fn a_robot_without_one_motor_or_encoder_reaches_20_places_within_twice_the_time(
             (PartFault::MotorOpen(wheel), Part::motor(wheel)),
             (PartFault::EncoderDead(wheel), Part::encoder(wheel)),
         ] {
-            let (lame, least) = tour(Some((fault, part)), 20.0);
+            let (degraded, least) = tour(Some((fault, part)), 20.0);
             println!(
-                "{fault:?}: {lame:.1} s, whole {whole:.1} s; {least:.3} m from the area, whole {clear:.3} m"
+                "{fault:?}: {degraded:.1} s, whole {whole:.1} s; {least:.3} m from the area, whole {clear:.3} m"
             );
-            assert!(lame < 2.0 * whole && least > 0.0);
+            assert!(degraded < 2.0 * whole && least > 0.0);
         }
     }
 }
