@@ -49,7 +49,8 @@ export async function post(path, body) {
   return text;
 }
 
-async function refresh() {
+/** Fetches what is shown and what this viewer may ask for. */
+async function refreshState() {
   const state = await getJson(withToken("/api/state"));
   const restarted = state.life !== store.state.life;
   store.state = state;
@@ -57,6 +58,15 @@ async function refresh() {
     store.matchEvents = [];
     store.samples = [];
   }
+}
+
+async function refresh() {
+  await refreshState();
+  await refreshRecord();
+}
+
+/** Fetches what was recorded so far. */
+async function refreshRecord() {
   store.samples = await getJson("/api/plots");
   await catchUp();
   changed("state");
@@ -96,12 +106,19 @@ function take(text) {
   changed("newest", scene);
 }
 
-function connect() {
+/** Opens the connection; the state first, so that no scene is shown before its viewer may act on it. */
+async function connect() {
+  try {
+    await refreshState();
+  } catch {
+    reconnect();
+    return;
+  }
   socket = new WebSocket(`ws://${location.host}${withToken("/socket")}`);
   socket.onopen = () => {
     tries = 0;
     heard = performance.now();
-    refresh().catch(() => {});
+    refreshRecord().catch(() => {});
     showLink();
   };
   socket.onmessage = (event) => {
@@ -112,8 +129,12 @@ function connect() {
   socket.onclose = () => {
     socket = null;
     showLink();
-    setTimeout(connect, AGAIN[Math.min(tries++, AGAIN.length - 1)]);
+    reconnect();
   };
+}
+
+function reconnect() {
+  setTimeout(connect, AGAIN[Math.min(tries++, AGAIN.length - 1)]);
 }
 
 function showLink() {

@@ -20,6 +20,8 @@ fn touch_selects_drags_zooms_and_edits_a_case() {
     tab.resize(390, 844, true).unwrap();
     tab.emulate_touch().unwrap();
     tab.wait("window.onetwo?.store.scene?.robots.length === 12").unwrap();
+    // Its first press counts: what a viewer may ask for is known before the first scene is shown.
+    assert_eq!(tab.eval("onetwo.store.state.powers").unwrap(), "simulation");
     tab.tap("#play").unwrap();
     tab.wait("onetwo.store.latest.paused").unwrap();
 
