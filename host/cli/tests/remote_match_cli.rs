@@ -5,18 +5,21 @@
 mod running;
 
 use std::net::{SocketAddr, TcpListener, UdpSocket};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
 use std::time::Instant;
 
 use running::controller::Controller;
 use running::simulator::teleport;
 use running::{PATIENCE, Running, free, socket};
 use ssl::Message;
+use ssl::controller::ci::{ChangeOf, CiInput, CiOutput};
 use ssl::controller::{
     AutoRefRegistration, AutoRefToController, ControllerReply, ControllerToAutoRef, StatusCode,
 };
 use ssl::event::GameEventType;
 use ssl::net::Connection;
-use ssl::referee::{Command, Point};
+use ssl::referee::{Command, Point, Referee};
 use ssl::simulation::TeleportBall;
 use ssl::vision::{DetectionFrame, WrapperPacket};
 
@@ -122,6 +125,63 @@ fn the_automatic_referee_registers_and_reports_what_it_sees() {
         // The controller stops the game, and it goes on.
         start(&controller, &vision);
     }
+}
+
+/// A game controller in CI mode that stands at STOP: each message with a time or an act is answered. Sends on
+/// what it was sent.
+fn standing_controller() -> (String, Receiver<CiInput>) {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = listener.local_addr().expect("an address").to_string();
+    let (send, inputs) = channel();
+    thread::spawn(move || {
+        let (stream, _) = listener.accept().expect("a connection");
+        let mut talk = Connection::over(stream).expect("a talk");
+        let mut packet = Referee { command: Command::Stop as i32, ..Referee::default() };
+        while let Ok(Some(input)) = talk.receive::<CiInput>(PATIENCE) {
+            let acts = input.api_inputs.iter().filter_map(|act| act.change.as_ref()?.change.as_ref());
+            for act in acts {
+                if let ChangeOf::SetStatusMessage(set) = act {
+                    packet.status_message.clone_from(&set.status_message);
+                }
+            }
+            let output = CiOutput { referee_msg: Some(packet.clone()) };
+            if talk.send(&output).is_err() || send.send(input).is_err() {
+                break;
+            }
+        }
+    });
+    (address, inputs)
+}
+
+#[test]
+fn the_fields_clock_leads_a_game_controller_whose_packets_go_out() {
+    let (vision, referee) = (free(), socket());
+    let to = referee.local_addr().expect("an address").to_string();
+    let (address, inputs) = standing_controller();
+    let simulate = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--headless", "--speed", "2"];
+    let more = ["--vision", &vision, "--referee-to", &to, "--game-controller", &address];
+    let mut simulator = Running::start(&[&simulate[..], &more[..]].concat());
+    simulator.wait_for(&format!("referee  game controller {address}, by this field's clock"));
+    let mut stamps_ms = Vec::new();
+    while stamps_ms.len() < 50 {
+        let input = inputs.recv_timeout(PATIENCE).expect("the field leads");
+        let Some(stamp_ns) = input.timestamp else { continue };
+        assert_eq!(input.geometry.is_some(), stamps_ms.is_empty(), "once");
+        let frame = input.tracker_packet.and_then(|packet| packet.tracked_frame).expect("the field");
+        assert_eq!((frame.robots.len(), frame.balls.len()), (12, 1));
+        stamps_ms.push(stamp_ns / 1_000_000);
+    }
+    let steps_ms: Vec<i64> = stamps_ms.windows(2).map(|two| two[1] - two[0]).collect();
+    assert!(steps_ms.iter().all(|step| (20..=40).contains(step)), "simulated time: {steps_ms:?}");
+    let mut bytes = [0; 8192];
+    let (length, _) = referee.recv_from(&mut bytes).expect("the referee's packets");
+    let packet = Referee::decode(&bytes[..length]).expect("a packet of the referee");
+    assert_eq!(packet.command, Command::Stop as i32);
+    assert!((packet.packet_timestamp / 1_000).abs_diff(stamps_ms[0] as u64) < 10_000, "the field's time");
+    // Without it there is no referee: the field ends, with the reason.
+    drop(inputs);
+    let status = simulator.process.wait().expect("it ends");
+    assert_eq!(status.code(), Some(1));
 }
 
 #[test]

@@ -342,6 +342,8 @@ impl<'f> MatchRunner<'f> {
                     SnapshotRequest::Other => {}
                 }
             }
+            // Refused when it was read.
+            UserRequest::Seek { .. } => {}
             // Handled before: they go through the watchers.
             UserRequest::Parameter { .. } | UserRequest::Kicks { .. } | UserRequest::Drive { .. } => {}
             UserRequest::Remote { .. } => {

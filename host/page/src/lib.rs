@@ -45,7 +45,7 @@ pub use archive::ArchiveSample;
 pub use deferred_scene::DeferredScene;
 pub use limits::Limits;
 pub use match_event::{DecisionNote, MatchEvent, MatchEventKind};
-pub use page::{Page, PageError};
+pub use page::{Page, PageError, Transport};
 pub use problem::problem;
 pub use program_log::{LogEntry, LogLevel, ProgramLog};
 pub use request::{PageTeam, Powers, Refused, UserRequest};

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use serde::Serialize;
 use thiserror::Error;
 
 use crate::archive::Archive;
@@ -45,6 +46,17 @@ impl PageError {
     }
 }
 
+/// The moment of a recording that is sent to the network, for viewers to follow.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Transport {
+    /// Seconds since its start.
+    pub at: f64,
+    /// Time passes.
+    pub playing: bool,
+    /// Seconds of the recording a second while it plays.
+    pub speed: f32,
+}
+
 /// A page that is served until this value is dropped.
 pub struct Page {
     address: SocketAddr,
@@ -52,6 +64,7 @@ pub struct Page {
     requests: Receiver<Ask>,
     /// To the viewer whose request was taken last.
     asker: RefCell<Option<Arc<Mailbox>>>,
+    viewers: Arc<Viewers>,
     seats: Arc<AtomicUsize>,
     parameters: Arc<Mutex<String>>,
     snapshots: Arc<Mutex<String>>,
@@ -79,7 +92,7 @@ impl Page {
             port: address.port(),
             settings,
             explanations,
-            viewers,
+            viewers: viewers.clone(),
             kept: archive.kept(),
             asks,
             parameters: parameters.clone(),
@@ -92,6 +105,7 @@ impl Page {
             archive,
             requests,
             asker: RefCell::default(),
+            viewers,
             seats,
             parameters,
             snapshots,
@@ -143,6 +157,12 @@ impl Page {
     /// Passes the kept moments of the simulated field to the page, as a JSON list.
     pub fn set_snapshots(&self, snapshots: String) {
         *self.snapshots.lock().unwrap_or_else(PoisonError::into_inner) = snapshots;
+    }
+
+    /// Hands the moment of a recording that is sent to the network to all viewers. Never waits.
+    pub fn set_transport(&self, transport: Transport) {
+        let text = serde_json::json!({ "transport": transport }).to_string();
+        self.viewers.follow(&Arc::from(text));
     }
 
     /// Drops the history: another match starts.

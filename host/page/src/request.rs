@@ -34,6 +34,11 @@ pub enum UserRequest {
         /// Factor of real time, 0.05 to 20.
         factor: f32,
     },
+    /// Go to this moment of a recording that is sent to the network.
+    Seek {
+        /// Seconds since its start.
+        t: f64,
+    },
     /// Restart the match from its kick-off.
     Restart {
         /// Random seed; `None`: as before.
@@ -145,6 +150,8 @@ pub enum UserRequest {
 pub enum Powers {
     /// Nothing: a recording is replayed.
     None,
+    /// Pause, speed and moment of a recording that is sent to the network.
+    Replay,
     /// HALT: a real field.
     Halt,
     /// HALT, parameters, tests of kickers and drives by hand: a real field, where the operator has allowed
@@ -177,7 +184,9 @@ impl Powers {
             Self::Tune => {
                 "a real field takes nothing but HALT, parameters, kick tests and drives by hand from the page"
             }
-            Self::None | Self::Simulation => "a recording cannot be changed",
+            Self::None => "a recording cannot be changed",
+            Self::Simulation => "a match that runs has no other moment to go to",
+            Self::Replay => "a recording that is sent takes pause, speed and seek alone",
         }
     }
 }
@@ -188,7 +197,7 @@ impl UserRequest {
         let request: Self =
             serde_json::from_str(text).map_err(|error| Refused::Malformed(error.to_string()))?;
         let allowed = match powers {
-            Powers::Simulation => true,
+            Powers::Simulation => !matches!(request, Self::Seek { .. }),
             Powers::Halt => matches!(request, Self::Halt {}),
             Powers::Tune => {
                 matches!(
@@ -200,6 +209,9 @@ impl UserRequest {
                         | Self::Drive { .. }
                         | Self::Remote { .. }
                 )
+            }
+            Powers::Replay => {
+                matches!(request, Self::Pause { .. } | Self::Speed { .. } | Self::Seek { .. })
             }
             Powers::None => false,
         };
@@ -215,6 +227,7 @@ impl UserRequest {
             Self::Speed { factor } => {
                 (!(SPEED_MIN..=SPEED_MAX).contains(factor)).then_some("speed: 0.05 to 20")
             }
+            Self::Seek { t } => (!(0.0..=SEEK_MAX_S).contains(t)).then_some("a moment: 0 to 86400 s"),
             Self::Situation { name } => (name.len() > NAME_MAX).then_some("a situation: at most 200 bytes"),
             Self::Remote { request, .. } => {
                 (request.len() > NAME_MAX).then_some("a request: at most 200 bytes")
@@ -251,6 +264,8 @@ impl UserRequest {
 const SPEED_MIN: f32 = 0.05;
 /// A full match of two teams reaches at most this speed on one core.
 const SPEED_MAX: f32 = 20.0;
+/// Latest moment of a recording, s: a day.
+const SEEK_MAX_S: f64 = 86_400.0;
 /// Longest name of a case, bytes.
 const NAME_MAX: usize = 200;
 /// Largest coordinate of a place, m: no field is larger.
@@ -300,9 +315,27 @@ mod tests {
     }
 
     #[test]
+    fn a_recording_that_is_sent_takes_pause_speed_and_seek_and_no_more() {
+        let pause = r#"{"ask":"pause","on":true}"#;
+        for text in [pause, r#"{"ask":"speed","factor":0.1}"#, r#"{"ask":"seek","t":12.5}"#] {
+            assert!(UserRequest::read(text, Powers::Replay).is_ok(), "{text}");
+        }
+        let halt = UserRequest::read(r#"{"ask":"halt"}"#, Powers::Replay);
+        assert_eq!(halt, Err(Refused::NotHere(Powers::Replay)));
+        assert!(UserRequest::read(pause, Powers::None).is_err());
+        assert!(UserRequest::read(r#"{"ask":"seek","t":0}"#, Powers::Simulation).is_err());
+    }
+
+    fn powers(request: &str) -> Powers {
+        if request.contains("seek") { Powers::Replay } else { Powers::Simulation }
+    }
+
+    #[test]
     fn values_out_of_range_and_unknown_requests_are_refused() {
         for wrong in [
             r#"{"ask":"speed","factor":0}"#,
+            r#"{"ask":"seek","t":-1}"#,
+            r#"{"ask":"seek","t":1e9}"#,
             r#"{"ask":"step","ticks":0}"#,
             r#"{"ask":"loss","share":1.5}"#,
             r#"{"ask":"ball","at":[1e9,0]}"#,
@@ -311,10 +344,7 @@ mod tests {
             r#"{"ask":"drive","team":"blue","robot":1,"velocity":[1e99,0,0]}"#,
             &format!(r#"{{"ask":"situation","name":"{}"}}"#, "a".repeat(201)),
         ] {
-            assert!(
-                matches!(UserRequest::read(wrong, Powers::Simulation), Err(Refused::Range(_))),
-                "{wrong}"
-            );
+            assert!(matches!(UserRequest::read(wrong, powers(wrong)), Err(Refused::Range(_))), "{wrong}");
         }
         for wrong in
             ["", "[]", r#"{"ask":"fly"}"#, r#"{"ask":"halt","now":1}"#, r#"{"ask":"ball","at":[null,0]}"#]

@@ -208,7 +208,7 @@ fn look_on(mut wire: Wire, shared: &Shared, head: &Head, admission: Admission, p
 fn send(wire: &mut Wire, mailbox: &Mailbox) {
     while let Some(sent) = mailbox.next() {
         let frame = match sent {
-            Sent::Scene(scene) => socket::text(&scene),
+            Sent::Scene(text) | Sent::Transport(text) => socket::text(&text),
             Sent::Refusal(reason) => socket::text(&serde_json::json!({ "refused": reason }).to_string()),
             Sent::Pong(payload) => socket::pong(&payload),
         };

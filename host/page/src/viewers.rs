@@ -16,6 +16,7 @@ pub(crate) struct Viewers(Mutex<All>);
 #[derive(Debug, Default)]
 struct All {
     newest: Option<Arc<str>>,
+    transport: Option<Arc<str>>,
     mailboxes: Vec<Weak<Mailbox>>,
     ended: bool,
 }
@@ -31,10 +32,20 @@ impl Viewers {
         });
     }
 
+    /// Hands the moment that is sent to all of them, and to those to come. Never waits for a viewer.
+    pub(crate) fn follow(&self, transport: &Arc<str>) {
+        let mut all = locked(&self.0);
+        all.transport = Some(transport.clone());
+        for mailbox in all.mailboxes.iter().filter_map(Weak::upgrade) {
+            mailbox.change(|mail| mail.transport = Some(transport.clone()));
+        }
+    }
+
     /// The mailbox of a new viewer, with the newest scene.
     pub(crate) fn join(&self) -> Arc<Mailbox> {
         let mut all = locked(&self.0);
-        let mail = Mail { scene: all.newest.clone(), gone: all.ended, ..Mail::default() };
+        let (scene, transport) = (all.newest.clone(), all.transport.clone());
+        let mail = Mail { scene, transport, gone: all.ended, ..Mail::default() };
         let mailbox = Arc::new(Mailbox { mail: Mutex::new(mail), changed: Condvar::new() });
         all.mailboxes.push(Arc::downgrade(&mailbox));
         mailbox
@@ -62,6 +73,7 @@ pub(crate) struct Mailbox {
 #[derive(Debug, Default)]
 struct Mail {
     scene: Option<Arc<str>>,
+    transport: Option<Arc<str>>,
     untaken: u32,
     refusals: VecDeque<String>,
     ping: Option<Vec<u8>>,
@@ -72,6 +84,8 @@ struct Mail {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Sent {
     Scene(Arc<str>),
+    /// The moment of a recording that is sent to the network.
+    Transport(Arc<str>),
     /// Reason for which a request of the viewer is not carried out.
     Refusal(String),
     /// The answer to a ping.
@@ -91,6 +105,9 @@ impl Mailbox {
             }
             if let Some(reason) = mail.refusals.pop_front() {
                 return Some(Sent::Refusal(reason));
+            }
+            if let Some(transport) = mail.transport.take() {
+                return Some(Sent::Transport(transport));
             }
             if mail.untaken < UNTAKEN_MAX
                 && let Some(scene) = mail.scene.take()
@@ -168,6 +185,17 @@ mod tests {
         let before = viewers.join();
         viewers.end();
         assert_eq!((before.next(), viewers.join().next(), viewers.have_ended()), (None, None, true));
+    }
+
+    #[test]
+    fn the_newest_moment_that_is_sent_reaches_present_and_later_viewers() {
+        let viewers = Viewers::default();
+        let before = viewers.join();
+        let moments: Vec<Arc<str>> = ["1", "2"].map(Arc::from).to_vec();
+        moments.iter().for_each(|moment| viewers.follow(moment));
+        for mailbox in [before, viewers.join()] {
+            assert_eq!(mailbox.next(), Some(Sent::Transport(moments[1].clone())));
+        }
     }
 
     #[test]

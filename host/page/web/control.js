@@ -1,4 +1,4 @@
-// control: tab Control: the requests that a viewer may send. All in a simulation, HALT on a real field, none in a recording.
+// control: tab Control: the requests that a viewer may send. All in a simulation, HALT on a real field, none in a recording; the time line's where it is sent.
 
 import { byId, el, fill, say } from "./dom.js";
 import { handPart, showHand } from "./hand.js";
@@ -22,7 +22,7 @@ export function showControl() {
   const { powers, life, may_ask: mayAsk } = store.state;
   // A recording takes nothing from anybody: there the token makes no difference.
   const shown = mayAsk === false && powers !== "none" ? "locked" : powers;
-  fill(tab, `${shown} ${life}`, () => ({ simulation, halt, tune: halt, none, locked })[shown]());
+  fill(tab, `${shown} ${life}`, () => ({ simulation, halt, tune: halt, none, replay, locked })[shown]());
   showHand();
   showRemote();
   showPlayOn();
@@ -40,6 +40,11 @@ export function showControl() {
 
 const none = () => [
   el("p", { class: "muted" }, "A recording cannot be changed. Everything else works as in a match: layers, explanations, plots, and files of a moment."),
+  ...playOnPart(),
+];
+
+const replay = () => [
+  el("p", {}, "This recording goes out to the network. Pause, speed and moment (below, or by keys) are the program's: they hold for all that receive it and for all viewers. While it is paused nothing is sent."),
   ...playOnPart(),
 ];
 

@@ -10,6 +10,8 @@ const EVERY = 33;
 const TURN_PER_SPEED = 3;
 /** Fastest turn that is taken, rad/s. */
 const TURN_MAX = 6;
+/** Which robot is it: it turns to and fro on its place, rad/s, for so long each way, ms: a quarter of a turn. */
+const [SHOW_RATE, SHOW_EVERY] = [3, 500];
 /** A stick nearer to its middle rests: sticks of gamepads do not return exactly. */
 const STICK_RESTS = 0.12;
 /** Buttons of a standard gamepad: while the left one on the shoulder is held the robot is driven. */
@@ -17,7 +19,7 @@ const [DEAD_MAN, DRIBBLER, KICK] = [4, 0, 7];
 
 /** Name, face, words, and keys of each button. */
 const BUTTONS = [["ccw", "↺", "turn left", "q"], ["ahead", "▲", "ahead", "w", "ArrowUp"], ["cw", "↻", "turn right", "e"],
-  ["left", "◀", "left", "a", "ArrowLeft"], ["back", "▼", "back", "s", "ArrowDown"], ["right", "▶", "right", "d", "ArrowRight"], ["kick", "Kick", "kick", "k"]];
+  ["left", "◀", "left", "a", "ArrowLeft"], ["back", "▼", "back", "s", "ArrowDown"], ["right", "▶", "right", "d", "ArrowRight"], ["kick", "Kick", "kick", "k"], ["show", "Which is it?", "Which is it? It turns to and fro", "i"]];
 const KEYS = new Map(BUTTONS.flatMap(([name, , , ...keys]) => keys.map((key) => [key, name])));
 
 const held = new Set();
@@ -45,10 +47,10 @@ export function handPart() {
       el("label", { for: "hand-speed" }, "m/s"), el("input", { type: "number", id: "hand-speed", min: "0.1", max: "2", step: "0.1", value: "0.5" }),
       el("label", { for: "hand-kick" }, "kick, m/s"), el("input", { type: "number", id: "hand-kick", min: "1", max: "5.8", step: "0.1", value: "3" }),
       el("label", {}, el("input", { type: "checkbox", id: "hand-dribbler" }), " dribbler")),
-    el("div", { id: "hand-pad", tabindex: "0", role: "group", "aria-label": "Drive by keys: W A S D or arrows, Q and E to turn, K to kick, as long as they are held",
+    el("div", { id: "hand-pad", tabindex: "0", role: "group", "aria-label": "Drive by keys: W A S D or arrows, Q and E to turn, K to kick, I to show which one it is, as long as they are held",
       onkeydown: (event) => key(event, true), onkeyup: (event) => key(event, false), onfocusout: release }, ...buttons),
     el("div", { class: "field-set" }, el("button", { id: "hand-end", onclick: end }, "Back to the coach"), el("span", { id: "hand-state", role: "status" })),
-    el("p", { class: "muted" }, "Hold a button, a key while the pad has the focus (W A S D, Q E, K), or LB of a gamepad (left stick drives, right stick turns, A dribbles, RT kicks). While nothing is held the robot stands, and so do the others of its team, until “Back to the coach”. Only while the game runs; HALT always wins. The ball is kicked straight ahead when it lies at the dribbler."),
+    el("p", { class: "muted" }, "Hold a button, a key while the pad has the focus (W A S D, Q E, K, I), or LB of a gamepad (left stick drives, right stick turns, A dribbles, RT kicks). While nothing is held the robot stands, and so do the others of its team, until “Back to the coach”. Only while the game runs; HALT always wins. The ball is kicked straight ahead when it lies at the dribbler. “Which is it?” turns the robot to and fro on its place."),
   ];
 }
 
@@ -81,10 +83,11 @@ function wanted() {
   if (!pad && held.size === 0) return null;
   const has = (name) => Number(held.has(name));
   const [ahead, left, turn] = pad?.drive ?? [has("ahead") - has("back"), has("left") - has("right"), has("ccw") - has("cw")];
+  const show = has("show") ? (performance.now() % (2 * SHOW_EVERY) < SHOW_EVERY ? SHOW_RATE : -SHOW_RATE) : null;
   const speed = Math.min(2, Math.max(0, byId("hand-speed").valueAsNumber || 0)) / Math.max(1, Math.hypot(ahead, left));
   const rate = Math.max(-TURN_MAX, Math.min(TURN_MAX, turn * TURN_PER_SPEED * Math.max(0.5, speed)));
   const kick = pad?.kick || held.has("kick") ? byId("hand-kick").valueAsNumber : null;
-  return { velocity: [ahead * speed, left * speed, rate].map((x) => Number(x.toFixed(3))), dribbler: byId("hand-dribbler").checked || Boolean(pad?.dribbler), kick: kick || null };
+  return { velocity: (show ? [0, 0, show] : [ahead * speed, left * speed, rate]).map((x) => Number(x.toFixed(3))), dribbler: byId("hand-dribbler").checked || Boolean(pad?.dribbler), kick: kick || null };
 }
 
 const still = { velocity: [0, 0, 0], dribbler: false, kick: null };

@@ -99,6 +99,10 @@ function take(text) {
     changed("refused", scene.refused);
     return;
   }
+  if (scene.transport !== undefined) {
+    changed("transport", scene.transport);
+    return;
+  }
   // What comes after an earlier moment is another match.
   if (store.newest && scene.t < store.newest.t - 0.001) refresh().catch(() => {});
   else if (scene.happened !== store.matchEvents.length) catchUp().catch(() => {});
@@ -142,7 +146,7 @@ function showLink() {
   const over = open && store.newest?.over;
   const silent = open && !over && !store.state.recorded && store.newest && silence() > SILENT;
   const state = !open ? (store.newest ? "lost" : "waiting") : silent ? "lost" : "live";
-  const words = { lost: open ? "silent" : "lost", waiting: "connecting", live: store.state.recorded ? "recording" : over ? "full time" : "connected" }[state];
+  const words = { lost: open ? "silent" : "lost", waiting: "connecting", live: store.state.powers === "replay" ? "sending" : store.state.recorded ? "recording" : over ? "full time" : "connected" }[state];
   const badge = byId("connection");
   // A host that is reached is not well for that.
   const alarms = state === "live" ? (store.newest?.alarms ?? []).length : 0;

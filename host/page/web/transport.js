@@ -18,6 +18,24 @@ const SECONDS_MAX = 120;
 
 export const time = { live: true, playing: true, at: 0, pace: 1 };
 
+/** Of a recording that is sent to the network the moment is the program's, the same for all viewers: when it came, ms, and from where it goes on. */
+let sent = null;
+
+on("transport", (moment) => follow(moment));
+
+/** Goes on from there, until the program names the next moment. */
+function follow(moment) {
+  sent = { ...moment, came: performance.now() };
+  Object.assign(time, { live: false, playing: sent.playing, pace: sent.speed });
+  byId("pace").value = String(sent.speed);
+  changed("frame");
+}
+
+/** Asks the program for it, and shows it at once. */
+function steer(request, change) {
+  if (ask(request)) follow({ at: time.at, playing: sent.playing, speed: sent.speed, ...change });
+}
+
 let before = null;
 let arrived = 0;
 let interval = 40;
@@ -86,7 +104,9 @@ export function advance(now, passed) {
     return share < 1;
   }
   const [first, last] = span();
-  if (time.playing) {
+  if (sent) {
+    time.at = Math.min(last, sent.at + (sent.playing ? (performance.now() - sent.came) / 1000 * sent.speed : 0));
+  } else if (time.playing) {
     // What is still on its way is waited for.
     const ready = seconds.get(Math.floor(time.at));
     if (ready) time.at = Math.min(last, time.at + passed * time.pace);
@@ -127,6 +147,10 @@ export function seek(t, play = time.playing) {
   time.live = false;
   time.playing = play;
   time.at = Math.min(last, Math.max(first, t));
+  if (sent) {
+    if (play !== sent.playing) steer({ ask: "pause", on: !play }, { playing: play });
+    steer({ ask: "seek", t: time.at }, {});
+  }
   address();
   changed("frame");
   changed("panels");
@@ -148,8 +172,9 @@ export function toggle() {
     else if (store.state.powers === "simulation") ask({ ask: "pause", on: !store.latest?.paused });
     else seek(time.at, false);
   } else {
-    if (!time.playing && time.at >= span()[1] - 0.01) time.at = span()[0];
+    if (!time.playing && time.at >= span()[1] - 0.01) seek(span()[0], false);
     time.playing = !time.playing;
+    if (sent) steer({ ask: "pause", on: !time.playing }, { playing: time.playing });
     address();
     changed("frame");
   }
@@ -240,7 +265,10 @@ export function startTransport() {
       changed("notice", shared());
     }
   });
-  byId("pace").addEventListener("change", (event) => (time.pace = Number(event.target.value)));
+  byId("pace").addEventListener("change", (event) => {
+    time.pace = Number(event.target.value);
+    if (sent) steer({ ask: "speed", factor: time.pace }, { speed: time.pace });
+  });
   byId("freeze").addEventListener("change", (event) => {
     if (event.target.value) freeze(event.target.value);
     event.target.value = "";

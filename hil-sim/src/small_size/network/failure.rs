@@ -14,6 +14,9 @@ pub enum NetworkError {
     /// A league without rules of the Small Size League.
     #[error(transparent)]
     NoRules(#[from] NoRules),
+    /// The game controller that the field leads.
+    #[error(transparent)]
+    Controller(#[from] CiError),
     /// The ports of the synchronous mode cannot be had.
     #[error("--sync {0}: {1}; it and the next port must be free")]
     Sync(SocketAddr, io::Error),

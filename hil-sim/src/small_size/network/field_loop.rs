@@ -69,7 +69,8 @@ impl<'s> FieldLoop<'s> {
         let mut lines = Vec::new();
         let ports = Ports::open(settings.listen, settings.port, settings.legacy_port, &mut lines);
         let vision = NetSender::new(settings.vision, settings.interface.as_deref());
-        let referee = Referee::new(settings)?;
+        let server = Server::new(&settings.server);
+        let referee = Referee::new(settings, server.world())?;
         let sync =
             settings.sync.map(|blue| SyncPorts::open(blue).map_err(|error| NetworkError::Sync(blue, error)));
         let sync = sync.transpose()?;
@@ -79,7 +80,6 @@ impl<'s> FieldLoop<'s> {
         started.extend(referee.lines());
         spectator.started(started);
         lines.extend(multicast_advice(settings.vision));
-        let server = Server::new(&settings.server);
         Ok(Self { settings, spectator, server, ports, sync, vision, referee, lines, second: 0, skipped: 0 })
     }
 
@@ -93,6 +93,9 @@ impl<'s> FieldLoop<'s> {
                 sync.serve(&mut self.server, &mut self.lines, |world, lines| referee.look(world, lines));
             }
             None => self.advance(running.as_micros() as u64),
+        }
+        if let Some(error) = self.referee.failure.take() {
+            return Err(error.into());
         }
         for packet in self.referee.packets.drain(..) {
             self.spectator.referee(&packet, running);
@@ -135,7 +138,7 @@ impl<'s> FieldLoop<'s> {
             let speed = self.server.pace();
             self.server = Server::new(&ServerSettings { seed, ..self.settings.server.clone() });
             self.set_speed(speed);
-            self.referee.restart(self.settings, seed)?;
+            self.referee.restart(self.settings, seed, self.server.world())?;
             self.spectator.restarted(seed);
             self.skipped = 0;
         }

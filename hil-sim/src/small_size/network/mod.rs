@@ -58,6 +58,8 @@ pub struct NetworkSettings {
     pub assistant: bool,
     /// The external game controller that game events are reported to, `HOST:PORT`.
     pub autoref: Option<String>,
+    /// The game controller that is led by the field's clock and decides the match, in place of `referee`.
+    pub controller: Option<ControllerChoice>,
     /// Time after which the field ends, s; none: until it is stopped.
     pub duration: Option<f64>,
 }

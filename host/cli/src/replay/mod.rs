@@ -12,6 +12,7 @@ mod rewrite;
 mod send;
 mod show;
 mod trace;
+mod transport;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -4,8 +4,6 @@ use std::collections::BTreeMap;
 use std::net::{IpAddr, SocketAddr};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 
 use clap::Args;
 use feed::recording::{LeaguePacket, LeaguePackets, RecordedError, in_file};
@@ -13,7 +11,8 @@ use serde::Serialize;
 use ssl::log::{MessageKind, guess};
 use ssl::net::{NetSender, addresses};
 
-use super::ReplayArgs;
+use super::transport::{Due, Transport};
+use super::{ReplayArgs, show};
 use crate::Failure;
 use crate::args::parsers::{destination, machine, match_speed};
 use crate::output::{json_line, note, print_text};
@@ -24,9 +23,10 @@ use crate::stop::stopped_by_hand;
 pub(super) struct SendArgs {
     /// Replay the recording's packets of vision, referee and trackers to the network, byte for byte and with
     /// their original timing: to the league's groups and ports, or with HOST to the same ports of a host or
-    /// multicast group; with --at, from that moment on.
+    /// multicast group; with --at, from that moment on. With --watch the page shows the recording, and
+    /// pauses, moves and speeds up what is sent.
     #[arg(long, value_name = "HOST", num_args = 0..=1, value_parser = machine,
-        conflicts_with_all = ["watch", "event", "problems", "team", "check", "compare", "cut", "join", "export"])]
+        conflicts_with_all = ["event", "problems", "team", "check", "compare", "cut", "join", "export"])]
     #[expect(clippy::option_option, reason = "clap's form of a flag with an optional value")]
     send: Option<Option<IpAddr>>,
     /// Send vision to this address instead.
@@ -47,9 +47,9 @@ pub(super) struct SendArgs {
 }
 
 /// What was sent.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
+#[serde(tag = "kind", rename = "sent")]
 struct Report {
-    kind: &'static str,
     file: String,
     from_s: f64,
     to_s: f64,
@@ -112,83 +112,105 @@ impl SendArgs {
 }
 
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
-    let mut packets = LeaguePackets::open(&args.file)?;
-    let from_us = args.at.map_or(0, |at| (at * 1e6) as u64);
-    let mut report = Report {
-        kind: "sent",
-        file: args.file.display().to_string(),
-        from_s: 0.0,
-        to_s: 0.0,
-        sent: BTreeMap::new(),
-        left_out: 0,
-        damage: None,
-    };
-    let (mut pace, mut last_us, stopped) = (None, 0, stopped_by_hand());
-    for packet in packets.by_ref() {
-        last_us = packet.at.0;
-        if last_us < from_us {
-            continue;
+    let page = if args.watch { Some(show::load(args)?) } else { None };
+    if stopped_by_hand().load(Ordering::Relaxed) {
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut sending = Sending::new(args, Transport::new(args.send.speed, page));
+    let mut from_us = args.at.map_or(0, |at| (at * 1e6) as u64);
+    while let Some(again_us) = sending.pass(from_us)? {
+        from_us = again_us;
+    }
+    sending.finish()
+}
+
+/// A recording on its way to the network.
+struct Sending<'a> {
+    args: &'a ReplayArgs,
+    transport: Transport,
+    report: Report,
+    /// A packet was due.
+    started: bool,
+    /// Time of the newest packet that was read, µs.
+    last_us: u64,
+}
+
+impl<'a> Sending<'a> {
+    fn new(args: &'a ReplayArgs, transport: Transport) -> Self {
+        let file = args.file.display().to_string();
+        let report = Report { file, ..Report::default() };
+        Self { args, transport, report, started: false, last_us: 0 }
+    }
+
+    /// Sends the file's packets from a time on, µs; the time to start again from, none at the end.
+    fn pass(&mut self, mut from_us: u64) -> Result<Option<u64>, Failure> {
+        let mut packets = LeaguePackets::open(&self.args.file)?;
+        let mut moved = true;
+        for packet in packets.by_ref() {
+            self.last_us = packet.at.0;
+            if self.last_us < from_us {
+                continue;
+            }
+            if std::mem::take(&mut moved) {
+                self.start(self.last_us);
+            }
+            match self.transport.wait_until(self.last_us) {
+                Due::Now => self.send(&packet),
+                Due::From(later_us) if later_us > self.last_us => (from_us, moved) = (later_us, true),
+                Due::From(earlier_us) => return Ok(Some(earlier_us)),
+                Due::Stopped => return Ok(None),
+            }
         }
-        let pace = pace.get_or_insert_with(|| {
-            report.from_s = last_us as f64 * 1e-6;
-            note!("sending from {:.3} s at {} × real time; Ctrl-C stops", report.from_s, args.send.speed);
-            Pace { start: Instant::now(), start_us: last_us, speed: args.send.speed }
-        });
-        pace.wait_until(last_us);
-        if stopped.load(Ordering::Relaxed) {
-            break;
+        self.report.damage = packets.damage();
+        if !self.transport.has_page() || !self.started {
+            return Ok(None);
         }
-        report.to_s = last_us as f64 * 1e-6;
-        let Some((name, to)) = args.send.channel(&packet) else {
-            report.left_out += 1;
-            continue;
+        match self.transport.wait_at_end(self.last_us) {
+            Due::From(again_us) => Ok(Some(again_us)),
+            Due::Now | Due::Stopped => Ok(None),
+        }
+    }
+
+    /// Time goes on from the first packet that is wanted.
+    fn start(&mut self, at_us: u64) {
+        self.transport.set(at_us);
+        if !std::mem::replace(&mut self.started, true) {
+            self.report.from_s = at_us as f64 * 1e-6;
+            let speed = self.args.send.speed;
+            note!("sending from {:.3} s at {speed} × real time; Ctrl-C stops", self.report.from_s);
+        }
+    }
+
+    fn send(&mut self, packet: &LeaguePacket) {
+        self.report.to_s = packet.at.0 as f64 * 1e-6;
+        let args = &self.args.send;
+        let Some((name, to)) = args.channel(packet) else {
+            self.report.left_out += 1;
+            return;
         };
-        let channel = report.sent.entry(name).or_insert_with(|| {
-            let sender = NetSender::new(to, args.send.interface.as_deref());
+        let channel = self.report.sent.entry(name).or_insert_with(|| {
+            let sender = NetSender::new(to, args.interface.as_deref());
             Channel { to, packets: 0, bytes: 0, failed: 0, sender }
         });
         channel.send(name, &packet.bytes);
     }
-    if pace.is_none() {
-        let asked = match args.at {
-            Some(at) => format!("it ends after {:.3} s, before {at} s", last_us as f64 * 1e-6),
-            None => "it holds no packet".to_owned(),
-        };
-        return Err(in_file(&args.file)(RecordedError::NotThere { asked, damage: packets.damage() }).into());
-    }
-    report.damage = packets.damage();
-    print_text(&if args.json { json_line(&report)? } else { report.text() })?;
-    let failed = report.sent.values().any(|channel| channel.failed > 0);
-    match report.damage {
-        Some(damage) => Err(in_file(&args.file)(RecordedError::Damaged(damage)).into()),
-        None if failed || report.sent.is_empty() => Ok(ExitCode::FAILURE),
-        None => Ok(ExitCode::SUCCESS),
-    }
-}
 
-/// Schedule of packets on this computer's clock.
-struct Pace {
-    start: Instant,
-    /// Time of the first packet, µs.
-    start_us: u64,
-    speed: f32,
-}
-
-impl Pace {
-    /// Waits until a packet is due. After a suspension of the program the schedule is shifted, so that
-    /// packets keep their intervals instead of leaving in a burst.
-    fn wait_until(&mut self, at_us: u64) {
-        let since_s = at_us.saturating_sub(self.start_us) as f64 * 1e-6 / f64::from(self.speed);
-        let due = self.start + Duration::from_secs_f64(since_s);
-        while let Some(left) = due.checked_duration_since(Instant::now()).filter(|left| !left.is_zero()) {
-            sleep(left.min(WAIT_MAX));
-            if stopped_by_hand().load(Ordering::Relaxed) {
-                return;
-            }
+    fn finish(self) -> Result<ExitCode, Failure> {
+        let Self { args, report, started, last_us, .. } = self;
+        if !started {
+            let asked = match args.at {
+                Some(at) => format!("it ends after {:.3} s, before {at} s", last_us as f64 * 1e-6),
+                None => "it holds no packet".to_owned(),
+            };
+            let missing = RecordedError::NotThere { asked, damage: report.damage };
+            return Err(in_file(&args.file)(missing).into());
         }
-        let late = due.elapsed();
-        if late > LATE_MAX {
-            self.start += late;
+        print_text(&if args.json { json_line(&report)? } else { report.text() })?;
+        let failed = report.sent.values().any(|channel| channel.failed > 0);
+        match report.damage {
+            Some(damage) => Err(in_file(&args.file)(RecordedError::Damaged(damage)).into()),
+            None if failed || report.sent.is_empty() => Ok(ExitCode::FAILURE),
+            None => Ok(ExitCode::SUCCESS),
         }
     }
 }
@@ -207,9 +229,3 @@ impl Report {
         lines.join("\n") + "\n"
     }
 }
-
-/// Longest sleep between two checks for Ctrl-C: no operator notices the delay.
-const WAIT_MAX: Duration = Duration::from_millis(100);
-/// A packet that is later than this was held up by a suspended program, not by the scheduler: loops of the
-/// league's programs are 10 to 20 ms, and a loaded machine delays by 100 ms.
-const LATE_MAX: Duration = Duration::from_millis(500);

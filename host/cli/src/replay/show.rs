@@ -28,6 +28,12 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     Ok(if matches!(shown, Shown::Broken { .. }) { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
+/// The page with all of the recording, for a verb that goes on with it.
+pub(super) fn load(args: &ReplayArgs) -> Result<Page, Failure> {
+    let (page, ..) = if begins_as_trace(&args.file)? { show_trace(args)? } else { show_log(args)? };
+    Ok(page)
+}
+
 fn show_trace(args: &ReplayArgs) -> Result<(Page, Shown, &'static str), Failure> {
     let (observer, key_file) = (Progress::silent(), args.key_file.as_deref());
     let trace = TraceFile::open(&args.file)?;
@@ -69,5 +75,6 @@ fn open(args: &ReplayArgs, league: League) -> Result<(Page, Option<LibraryHandle
     let name = args.file.file_name().map(|name| name.to_string_lossy().into_owned());
     let explanations = CaseExplanations::new(library, RetrievalSettings::default())
         .playing_on(MomentSource::Recording(args.file.clone(), league));
-    Ok((args.page.open(name.unwrap_or_default(), true, Powers::None, explanations)?, library))
+    let powers = if args.send.is_wanted() { Powers::Replay } else { Powers::None };
+    Ok((args.page.open(name.unwrap_or_default(), true, powers, explanations)?, library))
 }

@@ -141,6 +141,7 @@ impl Dashboard {
                 | UserRequest::Kicks { .. }
                 | UserRequest::Drive { .. }
                 | UserRequest::Remote { .. }
+                | UserRequest::Seek { .. }
                 | UserRequest::Save {} => {
                     self.page.refuse("that can be asked of `onetwo play`; here others command the robots");
                 }

@@ -15,7 +15,7 @@ use clap::{Args, ValueEnum};
 use hil_sim::ParameterError;
 use hil_sim::small_size::NoiseParameters;
 use hil_sim::small_size::compatibility::Profile;
-use hil_sim::small_size::network::{self, NetworkSettings, RefereeKind};
+use hil_sim::small_size::network::{self, ControllerChoice, NetworkSettings, RefereeKind};
 use hil_sim::small_size::server::ServerSettings;
 use hil_sim::small_size::worlds::{WorldChoice, WorldModel};
 use rules::League;
@@ -89,7 +89,11 @@ pub(crate) struct SimulateArgs {
     /// referee; port 10007 by default. With --assistant it also decides about goals.
     #[arg(long, value_name = "HOST[:PORT]", value_parser = controller)]
     autoref: Option<String>,
-    /// Destination of the internal referee's packets.
+    /// Play under the league's game controller in its CI mode, which this field's clock leads: its program,
+    /// which is started for it, or the HOST:PORT of one that runs.
+    #[arg(long, value_name = "PATH|HOST:PORT", conflicts_with_all = ["referee", "assistant", "autoref"])]
+    game_controller: Option<ControllerChoice>,
+    /// Destination of the packets of the internal referee, or of the --game-controller.
     #[arg(long, value_name = "HOST:PORT", default_value_t = addresses::REFEREE.into(), value_parser = destination)]
     referee_to: SocketAddr,
     /// Send the output of our own tracker, too: the league's address is 224.5.23.2:10010.
@@ -176,6 +180,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
         referee_to: args.referee_to,
         assistant: args.assistant,
         autoref: args.autoref.clone(),
+        controller: args.game_controller.clone(),
         duration: args.duration,
     };
     network::run(&network, &mut FieldOperator::new(args, title), stopped_by_hand())?;

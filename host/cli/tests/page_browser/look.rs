@@ -250,6 +250,29 @@ fn a_narrow_screen_shows_candidates_as_cards() {
     no_errors(&mut tab);
 }
 
+/// Tabs whose words need more room than they have, or that stand in a second row; then parts of Health that
+/// are wider than what is seen of them.
+const TOO_WIDE: &str = "(() => {
+  const tabs = [...document.querySelectorAll('#tabs button')];
+  const full = tabs.filter((tab) => tab.scrollWidth > tab.clientWidth || tab.offsetTop !== tabs[0].offsetTop);
+  const health = [...document.querySelectorAll('#tab-health, #tab-health .scroll')].filter((part) => part.scrollWidth > part.clientWidth);
+  return [...full, ...health].map((one) => one.dataset.tab ?? one.getAttribute('aria-label') ?? one.id).join();
+})()";
+
+#[test]
+fn tabs_and_health_have_room_from_1100_to_1600_pixels() {
+    let program = Program::play(&["--seed", "2", "--league", "division-a"]);
+    let mut browser = Browser::start().unwrap();
+    let mut tab = browser.open(&program.url("?tab=health"), 1440, 900).unwrap();
+    tab.wait("document.querySelectorAll('#tab-health .scroll tbody tr').length > 20").unwrap();
+    for width in [1100, 1280, 1366, 1440, 1600] {
+        tab.resize(width, 900, false).unwrap();
+        tab.wait(&format!("innerWidth === {width}")).unwrap();
+        assert_eq!(tab.eval(TOO_WIDE).unwrap(), "", "{width} px");
+    }
+    no_errors(&mut tab);
+}
+
 #[test]
 fn a_host_without_vision_says_so_on_its_page() {
     let program = Program::start(&[

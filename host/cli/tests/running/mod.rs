@@ -85,6 +85,7 @@ impl Running {
     }
 
     /// The control port that the simulator prints.
+    #[allow(dead_code, reason = "each test program takes what it needs of it")]
     pub(crate) fn control_port(&mut self) -> u16 {
         let (_, line) = self.wait_for("control  ");
         let address = line.split_whitespace().nth(1).expect("an address").trim_end_matches(',');
