@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ STEPS = 1_000_000
 
 def main() -> None:
     task, *others = sys.argv[1:]
-    settings = dict(one.split("=", 1) for one in others if "=" in one)
+    settings: dict[str, Any] = dict(one.split("=", 1) for one in others if "=" in one)
     steps = next((int(one) for one in others if one.isdigit()), STEPS)
     seed = int(settings.pop("seed", 1))
     envs = TaskVectorEnv(COPIES, threads=1, task=task, **settings)

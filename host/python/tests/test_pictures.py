@@ -77,7 +77,7 @@ class Pictures(unittest.TestCase):
                     elif mode == "ansi":
                         self.assertNotEqual(before, after)
                     else:
-                        self.assertEqual((after.dtype, after.shape), (np.uint8, (136 if "Scenario" in name else 138, 200, 3)))
+                        self.assertEqual((after.dtype, after.shape), (np.uint8, (140 if "Scenario" in name else 138, 200, 3)))
                         self.assertTrue((before != after).any())
                     env.close()
                     parallel = TaskParallelEnv(task=onetwo.env.TASKS[name], render_mode=mode, width=200)
