@@ -1,5 +1,5 @@
-//! `eyes`: what a host knows of an episode: places and velocities that its tracker estimates from cameras' late
-//! and noisy frames, and robots' own reports of ball contact.
+//! `eyes`: what a host knows of an episode: places and velocities that its tracker estimates from cameras'
+//! late and noisy frames, and robots' own reports of ball contact.
 
 use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::compatibility::Profile;

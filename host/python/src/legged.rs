@@ -156,8 +156,8 @@ const fn end_of(outcome: TrialOutcome) -> End {
     }
 }
 
-/// What an action or an observation of 1 stands for: a robot's speed, m/s, and turn, rad/s, and the speed, m/s, of
-/// a ball that rolls as far as the strongest pass.
+/// What an action or an observation of 1 stands for: a robot's speed, m/s, and turn, rad/s, and the speed,
+/// m/s, of a ball that rolls as far as the strongest pass.
 pub fn scales() -> [f32; 3] {
     let of = Parameters::four_legged();
     [of.walk.forward, of.walk.turn, math::sqrt(2.0 * of.ball.deceleration * of.kick.pass_max)]
