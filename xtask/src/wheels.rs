@@ -60,8 +60,9 @@ fn wheel_of(wheels: &Path, tag: &str, processor: &str) -> Result<PathBuf, Failur
         name.ends_with(&end) && name.contains(tag)
     });
     let newest = files.max_by_key(|file| fs::metadata(file).and_then(|of| of.modified()).ok());
-    let missing = || Failure::Documentation(format!("{}: no wheel {tag} for {processor}", wheels.display()));
-    newest.ok_or_else(missing)
+    newest.ok_or_else(|| {
+        Failure::Documentation(format!("{}: no wheel {tag} for {processor}", wheels.display()))
+    })
 }
 
 /// Processors that wheels are built for.

@@ -51,8 +51,9 @@ impl Computers {
         let (settings, places) = (settings.clone(), world.clone());
         let thread = std::thread::Builder::new().name("onetwo computers".to_owned()).spawn(move || {
             let played = if let Some(scenario) = settings.task.spec().scenario {
-                let answer = |world, judgement| outbox.send(Ok((world, judgement))).is_ok();
-                legged::play(&settings, (scenario, seed), places, &inbox, answer)
+                legged::play(&settings, (scenario, seed), places, &inbox, |world, judgement| {
+                    outbox.send(Ok((world, judgement))).is_ok()
+                })
             } else {
                 play(&settings, seed, &places, &inbox, &outbox).map_err(|error| error.to_string())
             };
