@@ -28,8 +28,8 @@ pub enum Event {
 pub enum Saved {
     /// All of its state.
     Whole(Box<State>),
-    /// Where computers play or cameras watch, what happened since the start, to be played again; with the hash
-    /// at the end.
+    /// Where computers play or cameras watch, what happened since the start, to be played again; with the
+    /// hash at the end.
     Played(Settings, u64, Vec<Event>, TraceHash),
 }
 
