@@ -123,17 +123,20 @@ fn ensure_python() -> Result<&'static str, Failure> {
 }
 
 fn fit_python() -> Option<&'static str> {
-    NAMES.into_iter().find(|name| is_fit(Path::new(name)))
+    NAMES.into_iter().find(|name| is_fit(Path::new(name), TESTED_FROM))
 }
 
-/// Whether it is a Python that the package runs on, and makes environments.
-pub(crate) fn is_fit(python: &Path) -> bool {
+/// Whether it is Python 3.`minor` or later, and makes environments.
+pub(crate) fn is_fit(python: &Path, minor: u32) -> bool {
     let mut question = Command::new(python);
-    question.args(["-c", "import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))"]);
+    let code = format!("import ensurepip, sys, venv; sys.exit(sys.version_info < (3, {minor}))");
+    question.args(["-c", &code]);
     question.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     question.status().is_ok_and(|status| status.success())
 }
 
+/// The oldest Python 3.x that all of what is needed for the tests runs on.
+const TESTED_FROM: u32 = 11;
 /// The start page whose Python is run.
 const START_PAGE: &str = "docs/start/cbr-researcher.md";
 /// The package, from the workspace's root.
@@ -166,8 +169,8 @@ mod tests {
 
     #[test]
     fn what_is_no_python_is_not_taken() {
-        assert!(!is_fit(Path::new("onetwo-has-no-such-program")));
-        assert!(!is_fit(Path::new("false")));
+        assert!(!is_fit(Path::new("onetwo-has-no-such-program"), TESTED_FROM));
+        assert!(!is_fit(Path::new("false"), TESTED_FROM));
     }
 
     #[test]

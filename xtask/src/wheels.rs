@@ -18,15 +18,18 @@ pub(crate) fn build(context: &Context, names: &[String]) -> Result<(), Failure> 
         run(Command::new("rustup").current_dir(context.root()).args(["target", "add", &target]))?;
         let line =
             format!("-m maturin build --release --locked --zig --compatibility {GLIBC} --target {target}");
-        let mut build = environment.python(context);
-        build.args(line.split(' ')).args(["--manifest-path", "host/python/Cargo.toml", "--out"]);
-        run(build.arg(&out))?;
+        for kind in [&[][..], &OLDEST] {
+            let mut build = environment.python(context);
+            build.args(line.split(' ')).args(kind);
+            run(build.args(["--manifest-path", "host/python/Cargo.toml", "--out"]).arg(&out))?;
+        }
     }
     let (mut tried, mut missing) = (Vec::new(), Vec::new());
     for version in VERSIONS {
         let python = format!("python3.{version}");
-        if is_fit(Path::new(&python)) {
-            test(context, &python, &out)?;
+        if is_fit(Path::new(&python), version) {
+            let tag = if version == *VERSIONS.start() { "-cp310-" } else { "-abi3-" };
+            test(context, &python, &wheel_of(&out, tag, std::env::consts::ARCH)?)?;
             tried.push(python);
         } else {
             missing.push(python);
@@ -37,25 +40,29 @@ pub(crate) fn build(context: &Context, names: &[String]) -> Result<(), Failure> 
 }
 
 /// Installs this machine's wheel in an empty environment, without compiler or other packages, and asks it.
-fn test(context: &Context, python: &str, wheels: &Path) -> Result<(), Failure> {
+fn test(context: &Context, python: &str, wheel: &Path) -> Result<(), Failure> {
     let directory = firmware_build::target_dir(context.root()).join("wheel-test");
     run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&directory))?;
     let inside = directory.join("bin/python");
-    let wheel = wheel_of(wheels, std::env::consts::ARCH)?;
     run(Command::new(&inside)
         .args(["-m", "pip", "install", "--quiet", "--no-deps", "--no-index"])
         .arg(wheel))?;
     run(Command::new(inside).current_dir(&directory).args(["-c", QUESTION]))
 }
 
-/// The newest wheel of a processor.
-fn wheel_of(wheels: &Path, processor: &str) -> Result<PathBuf, Failure> {
+/// The newest wheel with that tag for a processor.
+fn wheel_of(wheels: &Path, tag: &str, processor: &str) -> Result<PathBuf, Failure> {
     let entries = fs::read_dir(wheels).map_err(|error| Failure::at(wheels, error))?;
     let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
     let end = format!("{processor}.whl");
-    let files = files.filter(|file| file.to_string_lossy().ends_with(&end));
+    let files = files.filter(|file| {
+        let name = file.to_string_lossy();
+        name.ends_with(&end) && name.contains(tag)
+    });
     let newest = files.max_by_key(|file| fs::metadata(file).and_then(|of| of.modified()).ok());
-    newest.ok_or_else(|| Failure::Documentation(format!("{}: no wheel for {processor}", wheels.display())))
+    newest.ok_or_else(|| {
+        Failure::Documentation(format!("{}: no wheel {tag} for {processor}", wheels.display()))
+    })
 }
 
 /// Processors that wheels are built for.
@@ -64,8 +71,11 @@ const PROCESSORS: [&str; 2] = ["x86_64", "aarch64"];
 const GLIBC: &str = "manylinux2014";
 /// Linker for any processor and C library, as a package of Python.
 const ZIG: &str = "ziglang==0.13.0";
-/// Pythons 3.x that one wheel serves, as far as PyO3 0.30 goes.
-const VERSIONS: std::ops::RangeInclusive<u32> = 11..=15;
+/// Pythons 3.x, as far as PyO3 0.30 goes. One wheel serves all but the first, whose stable interface has no
+/// buffers.
+const VERSIONS: std::ops::RangeInclusive<u32> = 10..=15;
+/// What builds the wheel of the first alone.
+const OLDEST: [&str; 3] = ["--no-default-features", "--interpreter", "3.10"];
 /// What a wheel is asked: a case, a period of the simulator with its picture, a copy.
 const QUESTION: &str = "
 import copy, onetwo

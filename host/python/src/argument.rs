@@ -47,6 +47,7 @@ arguments! {
     opponents_by: optional_text -> Option<Text>;
     world: text -> Text;
     league: text -> Text;
+    observation: text -> Text;
     scenario: text -> Text;
     opponents: text -> Text;
     approach: text -> Text;
@@ -81,6 +82,11 @@ impl std::ops::Deref for Text {
 /// A number of opponents, or `None`.
 pub fn opponents_count(value: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
     optional_whole("opponents", value)
+}
+
+/// A league, or `None`.
+pub fn league_if_any(value: &Bound<'_, PyAny>) -> PyResult<Option<Text>> {
+    optional_text("league", value)
 }
 
 /// A number of robots, or `None`.

@@ -17,7 +17,8 @@ use host::strategy::Team;
 use protocol::{Duration, RobotId, Who};
 use rules::{Colour, Phase};
 
-use crate::settings::Settings;
+use crate::legged;
+use crate::settings::{End, Settings};
 
 /// What the referee says of a tick.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,6 +29,8 @@ pub struct Judgement {
     pub in_play: bool,
     /// The side whose restart it is.
     pub restart: Option<Colour>,
+    /// How the referee of a trial ends it.
+    pub end: Option<End>,
 }
 
 /// One tick's world, judged.
@@ -47,9 +50,16 @@ impl Computers {
         let (outbox, ticks) = channel();
         let (settings, places) = (settings.clone(), world.clone());
         let thread = std::thread::Builder::new().name("onetwo computers".to_owned()).spawn(move || {
-            if let Err(error) = play(&settings, seed, &places, &inbox, &outbox) {
+            let played = if let Some(scenario) = settings.task.spec().scenario {
+                legged::play(&settings, (scenario, seed), places, &inbox, |world, judgement| {
+                    outbox.send(Ok((world, judgement))).is_ok()
+                })
+            } else {
+                play(&settings, seed, &places, &inbox, &outbox).map_err(|error| error.to_string())
+            };
+            if let Err(error) = played {
                 // The episode may be gone already.
-                let _ = outbox.send(Err(error.to_string()));
+                let _ = outbox.send(Err(error));
             }
         });
         thread.map_err(|error| format!("no thread for the robots' computers: {error}"))?;
@@ -175,12 +185,14 @@ fn judgement(game: &Game<'_>) -> Judgement {
         score: [Colour::Blue, Colour::Yellow].map(|team| referee.accounts().of(team).score),
         in_play: referee.phase() == Phase::Run,
         restart,
+        end: None,
     }
 }
 
 /// Whether these settings need computers.
 pub fn are_needed(settings: &Settings) -> bool {
     settings.task.spec().referee
+        || settings.task.spec().scenario.is_some()
         || settings.opponents_by.team().is_some()
         || (settings.teammates_by.team().is_some() && settings.agents < settings.own)
 }

@@ -24,6 +24,8 @@ geometry::labels! {
         Marking = "marking",
         /// The same with a wall between ball and goal.
         Zone = "zone",
+        /// The first paper's midfield and defender, where `Scripted` is its defender and goalie.
+        TwoDefenders = "two-defenders",
     }
 }
 
@@ -31,7 +33,7 @@ impl Driver {
     /// The team whose computers and host play, where there are any.
     pub const fn team(self) -> Option<Team> {
         match self {
-            Self::None | Self::Scripted => None,
+            Self::None | Self::Scripted | Self::TwoDefenders => None,
             Self::Coach => Some(Team::Ours),
             Self::Reactive => Some(Team::Reactive),
             Self::Marking => Some(Team::Marking),

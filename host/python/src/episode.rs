@@ -7,8 +7,9 @@ use hil_sim::small_size::Ball;
 use protocol::Who;
 use serde::{Deserialize, Serialize};
 
-use crate::computers::{self, Computers, TICK_MS};
-use crate::settings::Settings;
+use crate::computers::{self, Computers};
+use crate::eyes::Eyes;
+use crate::settings::{Settings, Sight, View};
 use crate::state::State;
 
 /// What the caller did to an episode.
@@ -27,7 +28,8 @@ pub enum Event {
 pub enum Saved {
     /// All of its state.
     Whole(Box<State>),
-    /// Where computers play, what happened since the start, to be played again; with the hash at the end.
+    /// Where computers play or cameras watch, what happened since the start, to be played again; with the
+    /// hash at the end.
     Played(Settings, u64, Vec<Event>, TraceHash),
 }
 
@@ -37,7 +39,8 @@ pub struct Episode {
     /// Its state, but for computers'.
     pub state: State,
     computers: Option<Computers>,
-    /// Where there are computers, what happened since the start.
+    eyes: Option<Eyes>,
+    /// Where there are computers or eyes, what happened since the start.
     events: Vec<Event>,
 }
 
@@ -54,7 +57,13 @@ impl Episode {
             None
         };
         state.trace.small_size_tick(0, &state.world);
-        Ok(Self { state, computers, events: Vec::new() })
+        let eyes = (state.settings.observation == Sight::Sensed).then(|| state.eyes()).transpose()?;
+        Ok(Self { state, computers, eyes, events: Vec::new() })
+    }
+
+    /// Writes the observation, [`Settings::observation_len`] numbers within ±1.
+    pub fn observe(&self, view: View, into: &mut [f32]) {
+        self.state.observe(view, self.eyes.as_ref().map(|eyes| &eyes.believed), into);
     }
 
     /// Plays one control period with these orders, [`ACTION_LEN`] numbers for each robot; an empty slice
@@ -71,26 +80,32 @@ impl Episode {
         let Some(computers) = &self.computers else {
             for _ in 0..state.settings.period_ms {
                 state.world.step();
+                if let Some(eyes) = &mut self.eyes {
+                    eyes.look(&state.world);
+                }
                 state.end = state.judge();
                 if state.end.is_some() {
                     break;
                 }
             }
-            state.finish_step(before, was_in_play, [0; 2]);
+            state.finish_step(before, was_in_play, [0; 2], &mut self.eyes);
             return Ok(());
         };
         let score = state.score;
-        for _ in 0..state.settings.period_ms / TICK_MS {
+        for _ in 0..state.settings.period_ms / state.settings.tick_ms() {
             let judgement = computers.tick(&mut state.world)?;
+            if let Some(eyes) = &mut self.eyes {
+                eyes.look(&state.world);
+            }
             if state.settings.task.spec().referee {
                 state.take(judgement);
             }
-            state.end = state.judge();
+            state.end = judgement.end.or_else(|| state.judge());
             if state.end.is_some() {
                 break;
             }
         }
-        state.finish_step(before, was_in_play, score);
+        state.finish_step(before, was_in_play, score, &mut self.eyes);
         Ok(())
     }
 
@@ -108,9 +123,14 @@ impl Episode {
 
     /// Keeps an event where a copy must play it again.
     fn keep(&mut self, event: impl FnOnce() -> Event) {
-        if self.computers.is_some() {
+        if self.is_played_again() {
             self.events.push(event());
         }
+    }
+
+    /// Whether a saved state is the seed and what happened since.
+    fn is_played_again(&self) -> bool {
+        self.computers.is_some() || self.eyes.is_some()
     }
 
     /// Another that goes on as this one would.
@@ -118,13 +138,14 @@ impl Episode {
         if self.computers.is_some() {
             return Self::restored(self.saved());
         }
-        Ok(Self { state: self.state.clone(), computers: None, events: Vec::new() })
+        let (state, eyes) = (self.state.clone(), self.eyes.clone());
+        Ok(Self { state, computers: None, eyes, events: self.events.clone() })
     }
 
     /// The episode as it is saved.
     pub fn saved(&self) -> Saved {
         let state = &self.state;
-        if self.computers.is_some() {
+        if self.is_played_again() {
             let settings = state.settings.clone();
             return Saved::Played(settings, state.seed, self.events.clone(), state.trace);
         }
@@ -136,10 +157,12 @@ impl Episode {
         match saved {
             Saved::Whole(state) => {
                 state.settings.check()?;
-                if !state.is_consistent() || computers::are_needed(&state.settings) {
+                let is_played_again =
+                    computers::are_needed(&state.settings) || state.settings.observation == Sight::Sensed;
+                if !state.is_consistent() || is_played_again {
                     return Err("its robots do not fit its settings".to_owned());
                 }
-                Ok(Self { state: *state, computers: None, events: Vec::new() })
+                Ok(Self { state: *state, computers: None, eyes: None, events: Vec::new() })
             }
             Saved::Played(settings, seed, events, trace) => {
                 let mut episode = Self::start(settings, seed)?;

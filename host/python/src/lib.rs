@@ -9,6 +9,8 @@ mod argument;
 mod computers;
 mod driver;
 mod episode;
+mod eyes;
+mod legged;
 mod library;
 mod picture;
 mod ranking;

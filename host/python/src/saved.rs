@@ -48,7 +48,7 @@ fn hash(content: &[u8]) -> [u8; HASH_LEN] {
 /// First bytes of a saved state.
 const MARK: &[u8] = b"onetwo state";
 /// Version of the content: raised whenever a saved struct changes.
-const VERSION: u8 = 1;
+const VERSION: u8 = 2;
 /// Bytes of the hash, little endian.
 const HASH_LEN: usize = 8;
 /// Where the content starts.

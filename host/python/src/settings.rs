@@ -1,11 +1,13 @@
 //! `settings`: what an episode is started with, and how it may end. m, s.
 
+use hil_sim::TEAM;
 use hil_sim::small_size::worlds::WorldPlan;
 use rules::{Colour, League};
 use serde::{Deserialize, Serialize};
 
 use crate::computers::{self, TICK_MS};
 use crate::driver::Driver;
+use crate::legged;
 use crate::task::Task;
 
 /// Task, league, robots and times of an episode.
@@ -27,6 +29,8 @@ pub struct Settings {
     pub opponents_by: Driver,
     /// The world of each seed.
     pub world: WorldPlan,
+    /// What is observed.
+    pub observation: Sight,
     /// Control period, ms: orders stay as they are in between.
     pub period_ms: u32,
     /// Simulated time after which the episode ends, s.
@@ -39,13 +43,32 @@ impl Settings {
 
     /// The control period unless the caller sets another, ms: a multiple of computers' steps where they play.
     pub fn default_period_ms(&self) -> u32 {
-        if computers::are_needed(self) { COMPUTERS_PERIOD_MS } else { PERIOD_MS }
+        match self.tick_ms() {
+            TICK_MS => COMPUTERS_PERIOD_MS,
+            1 => PERIOD_MS,
+            tick => tick,
+        }
+    }
+
+    /// Time that the simulator is advanced by at once, ms.
+    pub fn tick_ms(&self) -> u32 {
+        match self.task.spec().scenario {
+            Some(_) => legged::TICK_MS,
+            None if computers::are_needed(self) => TICK_MS,
+            None => 1,
+        }
     }
 
     /// The error of the first value that cannot be played, which it names.
     pub fn check(&self) -> Result<(), String> {
         let Self { league, own, opponents, agents, period_ms, time_limit_s, .. } = *self;
-        if !Self::LEAGUES.contains(&league) {
+        if self.task.spec().scenario.is_some() {
+            self.check_trial()?;
+        } else if [self.teammates_by, self.opponents_by].contains(&Driver::TwoDefenders) {
+            return Err(
+                "opponents_by \"two-defenders\": only in the tasks \"scenario-1\" and following".to_owned()
+            );
+        } else if !Self::LEAGUES.contains(&league) {
             let known = Self::LEAGUES.map(League::name).join(" or ");
             return Err(format!("league {:?}: take {known}", league.name()));
         }
@@ -63,15 +86,38 @@ impl Settings {
         if !(1..=PERIOD_MAX_MS).contains(&period_ms) {
             return Err(format!("period_ms {period_ms}: take 1 to {PERIOD_MAX_MS} ms"));
         }
-        if computers::are_needed(self) && !period_ms.is_multiple_of(TICK_MS) {
+        let tick_ms = self.tick_ms();
+        if !period_ms.is_multiple_of(tick_ms) {
             return Err(format!(
-                "period_ms {period_ms}: robots' computers and referee step every {TICK_MS} ms; take a multiple of it"
+                "period_ms {period_ms}: robots' computers and referee step every {tick_ms} ms; take a multiple of it"
             ));
         }
         if time_limit_s.is_nan() || time_limit_s <= 0.0 {
             return Err(format!("time_limit_s {time_limit_s}: take more than 0 s"));
         }
         Ok(())
+    }
+
+    /// The same of a trial of the first paper.
+    fn check_trial(&self) -> Result<(), String> {
+        let Self { task, own, opponents, teammates_by, opponents_by, .. } = self;
+        let wrong = if self.league != League::FourLegged {
+            format!("league {:?}: take \"four-legged\"", self.league.name())
+        } else if *own > TEAM || *opponents > legged::OPPONENTS_MAX {
+            let most = legged::OPPONENTS_MAX;
+            format!("own {own}, opponents {opponents}: take at most {TEAM} own robots and {most} opponents")
+        } else if !matches!(teammates_by, Driver::None | Driver::Coach) {
+            format!("teammates_by {:?}: take none or coach", teammates_by.label())
+        } else if !matches!(opponents_by, Driver::None | Driver::Scripted | Driver::TwoDefenders) {
+            format!("opponents_by {:?}: take scripted, two-defenders or none", opponents_by.label())
+        } else if self.world != WorldPlan::default() {
+            "world: take nominal".to_owned()
+        } else if self.observation != Sight::Truth {
+            format!("observation {:?}: take truth", self.observation.label())
+        } else {
+            return Ok(());
+        };
+        Err(format!("{wrong} in the task {:?}", task.label()))
     }
 
     /// Number of robots of a side.
@@ -114,6 +160,19 @@ geometry::labels! {
         Lost = "lost",
         /// The time limit is reached.
         Time = "time",
+        /// The ball left the field beside the opponents' goal, in a trial of the first paper.
+        Close = "close",
+    }
+}
+
+geometry::labels! {
+    /// What is observed.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum Sight {
+        /// The true state.
+        Truth = "truth",
+        /// What a host estimates from cameras, and robots' own reports of ball contact.
+        Sensed = "sensed",
     }
 }
 

@@ -16,7 +16,7 @@ use crate::episode::Episode;
 use crate::picture::{self, Pixels};
 use crate::refused;
 use crate::saved::{restored, saved};
-use crate::settings::{ACTION_LEN, End, Settings, View};
+use crate::settings::{ACTION_LEN, End, Settings, Sight, View};
 use crate::task::Task;
 
 /// Episodes of the Small Size simulator.
@@ -34,7 +34,7 @@ impl Simulator {
     #[new]
     #[pyo3(signature = (own = None, opponents = None, *, task = Text::of("score"), agents = None,
         teammates_by = Text::of("none"), opponents_by = None, world = Text::of("nominal"),
-        league = Text::of("division-b"), period_ms = None, time_limit_s = None, seed = 0))]
+        observation = Text::of("truth"), league = None, period_ms = None, time_limit_s = None, seed = 0))]
     fn new(
         py: Python<'_>,
         #[pyo3(from_py_with = argument::own)] own: Option<usize>,
@@ -44,7 +44,8 @@ impl Simulator {
         #[pyo3(from_py_with = argument::teammates_by)] teammates_by: Text,
         #[pyo3(from_py_with = argument::opponents_by)] opponents_by: Option<Text>,
         #[pyo3(from_py_with = argument::world)] world: Text,
-        #[pyo3(from_py_with = argument::league)] league: Text,
+        #[pyo3(from_py_with = argument::observation)] observation: Text,
+        #[pyo3(from_py_with = argument::league_if_any)] league: Option<Text>,
         #[pyo3(from_py_with = argument::period_ms)] period_ms: Option<u32>,
         #[pyo3(from_py_with = argument::time_limit_s)] time_limit_s: Option<f64>,
         #[pyo3(from_py_with = argument::seed)] seed: u64,
@@ -55,9 +56,20 @@ impl Simulator {
         let spec = task.spec();
         let own = own.unwrap_or(spec.own);
         let opponents_by = opponents_by.map_or(Ok(spec.opponents_by), |label| driver("opponents_by", &label));
+        let league = match league {
+            Some(league) => known("league", &league, league_of, &Settings::LEAGUES.map(League::name))?,
+            None if spec.scenario.is_some() => League::FourLegged,
+            None => League::DivisionB,
+        };
         let mut settings = Settings {
             task,
-            league: known("league", &league, league_of, &Settings::LEAGUES.map(League::name))?,
+            league,
+            observation: known(
+                "observation",
+                &observation,
+                Sight::from_label,
+                &Sight::ALL.map(Sight::label),
+            )?,
             own,
             opponents: opponents.unwrap_or(spec.opponents),
             agents: agents.unwrap_or(own),
@@ -89,7 +101,12 @@ impl Simulator {
         read_actions("actions", actions, &mut self.own)?;
         let mut against = &[][..];
         if let Some(actions) = opponent_actions {
-            let driver = self.episode.state.settings.opponents_by;
+            let settings = &self.episode.state.settings;
+            let (driver, task) = (settings.opponents_by, settings.task);
+            if task.spec().scenario.is_some() {
+                let label = task.label();
+                return Err(refused(format!("opponent_actions: opponents of {label:?} take no orders")));
+            }
             if driver != Driver::None {
                 let label = driver.label();
                 return Err(refused(format!(
@@ -119,8 +136,7 @@ impl Simulator {
         if index > 0 {
             self.robot(index, opponent)?;
         }
-        let state = &self.episode.state;
-        state.observe(View { side, first: index }, &mut self.observation);
+        self.episode.observe(View { side, first: index }, &mut self.observation);
         write("into", into, &self.observation)
     }
 
@@ -182,8 +198,10 @@ impl Simulator {
         #[pyo3(from_py_with = argument::y)] y: f32,
         #[pyo3(from_py_with = argument::vx)] vx: f32,
         #[pyo3(from_py_with = argument::vy)] vy: f32,
-    ) {
+    ) -> PyResult<()> {
+        self.may_place("ball")?;
         self.episode.put_ball(Ball::rolling(Point::new(x, y), Vector::new(vx, vy)));
+        Ok(())
     }
 
     /// Places a robot, resting: an own one by its index, or an opponent.
@@ -196,6 +214,7 @@ impl Simulator {
         #[pyo3(from_py_with = argument::heading)] heading: f32,
         #[pyo3(from_py_with = argument::opponent)] opponent: bool,
     ) -> PyResult<()> {
+        self.may_place("robot")?;
         let who = self.robot(index, opponent)?;
         self.episode.put_robot(who, Pose { position: Point::new(x, y), heading: Angle::new(heading) });
         Ok(())
@@ -310,6 +329,15 @@ impl Simulator {
         &self.episode.state.settings
     }
 
+    /// An error where a task's places are those of its scenario.
+    fn may_place(&self, what: &str) -> PyResult<()> {
+        let task = self.settings().task;
+        if task.spec().scenario.is_none() {
+            return Ok(());
+        }
+        Err(refused(format!("place_{what}: places of the task {:?} are the scenario's", task.label())))
+    }
+
     fn robot(&self, index: usize, opponent: bool) -> PyResult<Who> {
         let colour = side_of(opponent);
         let count = self.settings().count(colour);
@@ -371,7 +399,7 @@ fn side_of(opponent: bool) -> Colour {
 }
 
 fn league_of(name: &str) -> Option<League> {
-    Settings::LEAGUES.into_iter().find(|known| known.name() == name)
+    Settings::LEAGUES.into_iter().chain([League::FourLegged]).find(|known| known.name() == name)
 }
 
 /// The value of that label, or an error with the known ones.

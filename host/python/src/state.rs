@@ -6,11 +6,13 @@ use hil_sim::TraceHash;
 use hil_sim::small_size::worlds::WorldModel;
 use hil_sim::small_size::{Drive, KickCommand, Order, Parameters, Robot, World};
 use protocol::{RobotId, Who};
-use rules::Colour;
+use rules::{Colour, League};
 use serde::{Deserialize, Serialize};
 
 use crate::computers::Judgement;
 use crate::driver::{Driver, Script};
+use crate::eyes::Eyes;
+use crate::legged;
 use crate::settings::{ACTION_LEN, End, Settings, View};
 use crate::start::line_up;
 
@@ -58,16 +60,18 @@ struct Scales {
 impl State {
     /// Ball and robots at the start; an error for a league without this simulator.
     pub fn start(settings: Settings, seed: u64) -> Result<Self, String> {
-        let parameters = Parameters::of(settings.league).ok_or(NO_SIMULATOR)?;
-        let model = WorldModel::of(settings.league, &settings.world.of_match(seed));
-        let mut world = World::of_model(settings.league, &model.ok_or(NO_SIMULATOR)?, seed);
-        line_up(&mut world, &settings, seed);
+        let (world, scales) = if settings.task.spec().scenario.is_some() {
+            // It shows ball and robots of the trial; its own physics rests.
+            let parameters = Parameters::of(League::DivisionB).ok_or(NO_SIMULATOR)?;
+            (World::new(settings.league, parameters, seed), legged::scales())
+        } else {
+            let of = Parameters::of(settings.league).ok_or(NO_SIMULATOR)?;
+            let mut world = World::of_model(settings.league, &model(&settings, seed)?, seed);
+            line_up(&mut world, &settings, seed);
+            (world, [of.drive.speed, of.drive.turn_speed, of.kick.flat])
+        };
         Ok(Self {
-            scales: Scales {
-                speed: parameters.drive.speed,
-                turn_speed: parameters.drive.turn_speed,
-                shot: parameters.kick.flat,
-            },
+            scales: Scales { speed: scales[0], turn_speed: scales[1], shot: scales[2] },
             in_play: !settings.task.spec().referee,
             settings,
             seed,
@@ -84,8 +88,16 @@ impl State {
         })
     }
 
+    /// The cameras over its world, with a host's tracker.
+    pub fn eyes(&self) -> Result<Eyes, String> {
+        Ok(Eyes::new(&self.world, model(&self.settings, self.seed)?.vision, self.seed))
+    }
+
     /// Simulated time since the start, s.
     pub fn time_s(&self) -> f64 {
+        if self.settings.task.spec().scenario.is_some() {
+            return f64::from(self.steps * self.settings.period_ms) * 0.001;
+        }
         self.world.now().saturating_sub(self.started) as f64 * 0.001
     }
 
@@ -123,8 +135,11 @@ impl State {
         (self.score, self.in_play, self.restart) = (judgement.score, judgement.in_play, judgement.restart);
     }
 
-    /// After a period's physics: hash, reward, time limit.
-    pub fn finish_step(&mut self, before: f32, was_in_play: bool, score: [u32; 2]) {
+    /// After a period's physics: estimate, hash, reward, time limit.
+    pub fn finish_step(&mut self, before: f32, was_in_play: bool, score: [u32; 2], eyes: &mut Option<Eyes>) {
+        if let Some(eyes) = eyes {
+            eyes.estimate(&self.world);
+        }
         self.world.take_events(&mut Vec::new());
         self.steps += 1;
         self.trace.small_size_tick(self.steps, &self.world);
@@ -141,17 +156,19 @@ impl State {
             Some(End::Out) => weights.out,
             Some(End::Received | End::Won) => weights.success,
             Some(End::Lost) => weights.lost,
-            Some(End::Time) | None => 0.0,
+            Some(End::Time | End::Close) | None => 0.0,
         };
         if self.end.is_none() && self.time_s() >= self.settings.time_limit_s {
             self.end = Some(End::Time);
         }
     }
 
-    /// Writes the observation, [`Settings::observation_len`] numbers within ±1.
-    pub fn observe(&self, view: View, into: &mut [f32]) {
-        let [x, y] = self.world.pitch().corner();
-        let (ball, Scales { speed, turn_speed, shot }) = (&self.world.ball, self.scales);
+    /// Writes the observation of the true state or of what is believed, [`Settings::observation_len`] numbers
+    /// within ±1.
+    pub fn observe(&self, view: View, believed: Option<&World>, into: &mut [f32]) {
+        let world = believed.unwrap_or(&self.world);
+        let [x, y] = world.pitch().corner();
+        let (ball, Scales { speed, turn_speed, shot }) = (&world.ball, self.scales);
         let turned = view.side.pick(-1.0, 1.0);
         let mut places = into.iter_mut();
         let mut next = |value: f32| {
@@ -174,7 +191,9 @@ impl State {
             let others = (0..count).filter(|n| *n != first);
             for n in (first..count).take(1).chain(others) {
                 let id = RobotId::new(n as u8).unwrap_or(RobotId::ZERO);
-                let Some(robot) = self.world.robot(Who { colour, id }) else { continue };
+                let Some(robot) = world.robot(Who { colour, id }) else { continue };
+                // Opponents do not report what they sense.
+                let contact = robot.ball_contact && (believed.is_none() || colour == view.side);
                 let (sin, cos) = robot.pose.heading.sin_cos();
                 for value in [
                     turned * robot.pose.position.x() / x,
@@ -184,7 +203,7 @@ impl State {
                     turned * robot.velocity.x() / speed,
                     turned * robot.velocity.y() / speed,
                     robot.turning / turn_speed,
-                    f32::from(u8::from(robot.ball_contact)),
+                    f32::from(u8::from(contact)),
                 ] {
                     next(value);
                 }
@@ -230,7 +249,7 @@ impl State {
     /// How the episode ends now, if it does; under the referee it goes on.
     pub fn judge(&mut self) -> Option<End> {
         let spec = self.settings.task.spec();
-        if spec.referee {
+        if spec.referee || spec.scenario.is_some() {
             return None;
         }
         let (ball, ends) = (self.world.ball.position, &spec.ends);
@@ -298,6 +317,11 @@ impl State {
 /// Whether a robot touches the ball; its break-beam sensor may detect it before the hull does.
 fn has_ball(robot: &Robot) -> bool {
     robot.touching || robot.ball_contact
+}
+
+fn model(settings: &Settings, seed: u64) -> Result<WorldModel, String> {
+    let model = WorldModel::of(settings.league, &settings.world.of_match(seed));
+    model.ok_or_else(|| NO_SIMULATOR.to_owned())
 }
 
 const NO_SIMULATOR: &str = "that league has no simulator of wheeled robots";

@@ -1,5 +1,6 @@
 //! `task`: the tasks as data: robots, start, ends and reward of each. m, s; own robots attack the goal at +x.
 
+use hil_sim::Scenario;
 use serde::{Deserialize, Serialize};
 
 use crate::driver::Driver;
@@ -22,6 +23,16 @@ geometry::labels! {
         ThreeASide = "3v3",
         /// A match under the referee, six a side.
         SixASide = "6v6",
+        /// The first paper's first scenario, in the four-legged league.
+        Scenario1 = "scenario-1",
+        /// Its second.
+        Scenario2 = "scenario-2",
+        /// Its third.
+        Scenario3 = "scenario-3",
+        /// Its fourth.
+        Scenario4 = "scenario-4",
+        /// The same with places drawn from the seed.
+        ScenarioRandom = "scenario-random",
     }
 }
 
@@ -46,6 +57,8 @@ pub struct TaskSpec {
     pub keeper: bool,
     /// True where the referee judges, as in a match; places and ends are then its own.
     pub referee: bool,
+    /// The first paper's scenario, whose places, robots and ends these are then.
+    pub scenario: Option<Scenario>,
     /// What ends an episode besides goals, a ball off the field and time.
     pub ends: Ends,
     /// What a step earns.
@@ -113,6 +126,11 @@ impl Task {
             Self::KeepAway => &KEEP_AWAY,
             Self::ThreeASide => &THREE_A_SIDE,
             Self::SixASide => &SIX_A_SIDE,
+            Self::Scenario1 => const { &scenario(Scenario::MiddleBack) },
+            Self::Scenario2 => const { &scenario(Scenario::LeftSide) },
+            Self::Scenario3 => const { &scenario(Scenario::DefenderAhead) },
+            Self::Scenario4 => const { &scenario(Scenario::DefenderClose) },
+            Self::ScenarioRandom => const { &scenario(Scenario::Random) },
         }
     }
 }
@@ -145,6 +163,7 @@ const SCORE: TaskSpec = TaskSpec {
     opponent_places: &[Place::Within([0.0, 1.0], [-1.0, 1.0])],
     keeper: false,
     referee: false,
+    scenario: None,
     ends: NO_ENDS,
     reward: SHOTS,
 };
@@ -213,3 +232,16 @@ const THREE_A_SIDE: TaskSpec = TaskSpec {
 };
 
 const SIX_A_SIDE: TaskSpec = TaskSpec { own: 6, opponents: 6, ..THREE_A_SIDE };
+
+/// A trial of the first paper: two attackers against two opponents, for the 60 s of its trials against two
+/// defenders (§5.2.2).
+const fn scenario(scenario: Scenario) -> TaskSpec {
+    TaskSpec {
+        own: 2,
+        opponents: 2,
+        opponents_by: Driver::Scripted,
+        time_limit_s: 60.0,
+        scenario: Some(scenario),
+        ..SCORE
+    }
+}

@@ -252,7 +252,7 @@ impl Share {
         let observations = self.observations.chunks_exact_mut(observation_len);
         for ((slot, action), observation) in self.slots.iter_mut().zip(actions).zip(observations) {
             slot.error = slot.step(action).err();
-            slot.episode.state.observe(View { side: Colour::Blue, first: 0 }, observation);
+            slot.episode.observe(View { side: Colour::Blue, first: 0 }, observation);
         }
     }
 }

@@ -61,13 +61,15 @@ class Pictures(unittest.TestCase):
                     warnings.simplefilter("error")
                     warnings.filterwarnings("ignore", category=DeprecationWarning)
                     env = gymnasium.make(name, render_mode=mode, width=200)
-                    self.assertEqual(env.metadata["render_fps"], 33 if "Side" in name else 40)
+                    rates = {"Side": 33, "Scenario": 25}
+                    rate = next((rate for part, rate in rates.items() if part in name), 40)
+                    self.assertEqual(env.metadata["render_fps"], rate)
                     if mode == "ansi":
                         # The checker renders in the other modes too.
                         check_env(gymnasium.make(name, width=200).unwrapped)
                     env.reset(seed=1)
                     before = env.render()
-                    for _ in range(5):
+                    for _ in range(12):
                         env.step(env.action_space.sample())
                     after = env.render()
                     if mode == "human":
@@ -75,7 +77,7 @@ class Pictures(unittest.TestCase):
                     elif mode == "ansi":
                         self.assertNotEqual(before, after)
                     else:
-                        self.assertEqual((after.dtype, after.shape), (np.uint8, (138, 200, 3)))
+                        self.assertEqual((after.dtype, after.shape), (np.uint8, (140 if "Scenario" in name else 138, 200, 3)))
                         self.assertTrue((before != after).any())
                     env.close()
                     parallel = TaskParallelEnv(task=onetwo.env.TASKS[name], render_mode=mode, width=200)

@@ -25,6 +25,7 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 TASKS = list(onetwo.env.TASKS.values())
 MATCHES = ["3v3", "6v6"]
 SINGLE = [task for task in TASKS if task not in MATCHES]
+TRIALS = [task for task in TASKS if task.startswith("scenario")]
 OTHERS = ["none", "scripted", "coach", "reactive", "marking", "zone"]
 
 
@@ -32,6 +33,18 @@ def play(simulator, steps, seed=0):
     """Drawn actions; what came of them."""
     draw = np.random.default_rng(seed)
     return [simulator.step(draw.uniform(-1, 1, simulator.action_size).astype(np.float32)) for _ in range(steps)]
+
+
+def modes(task):
+    """Settings in which a task is tried: the true state, another world, what a host estimates."""
+    return [{}] if task in TRIALS else [{}, {"world": "random"}, {"observation": "sensed"}]
+
+
+def observed(simulator):
+    """The observation as a list."""
+    into = np.zeros(simulator.observation_size, np.float32)
+    simulator.observe(into)
+    return into.tolist()
 
 
 def ended(simulator, action):
@@ -55,18 +68,19 @@ def chase(state, robot):
 class States(unittest.TestCase):
     def test_every_copy_of_every_task_goes_on_bit_for_bit(self):
         for task in TASKS:
-            for world in ("nominal", "random"):
-                with self.subTest(task=task, world=world):
-                    simulator = onetwo.Simulator(task=task, world=world, seed=7)
+            for mode in modes(task):
+                with self.subTest(task=task, **mode):
+                    simulator = onetwo.Simulator(task=task, seed=7, **mode)
                     play(simulator, 15)
-                    simulator.place_ball(0.5, 0.25, 1.0, -0.5)
+                    if task not in TRIALS:
+                        simulator.place_ball(0.5, 0.25, 1.0, -0.5)
                     play(simulator, 5, 1)
-                    other = onetwo.Simulator(task=task, world=world)
+                    other = onetwo.Simulator(task=task, **mode)
                     other.restore(simulator.save())
                     copies = [other, copy.deepcopy(simulator), pickle.loads(pickle.dumps(simulator))]
-                    expected = play(simulator, 20, 2), simulator.state(), simulator.trace_hash
+                    expected = play(simulator, 20, 2), simulator.state(), observed(simulator), simulator.trace_hash
                     for one in copies:
-                        self.assertEqual((play(one, 20, 2), one.state(), one.trace_hash), expected)
+                        self.assertEqual((play(one, 20, 2), one.state(), observed(one), one.trace_hash), expected)
 
     def test_a_state_goes_on_in_another_process(self):
         code = (
@@ -112,7 +126,7 @@ class States(unittest.TestCase):
             ("damaged", state[:-1]),
             ("damaged", state + b"x"),
             ("damaged", bytes(damaged)),
-            ("version 2 of the format", bytes(version)),
+            ("version 3 of the format", bytes(version)),
             ("this one has", onetwo.Simulator(task="score").save()),
         ):
             with self.subTest(words), self.assertRaisesRegex(ValueError, words):
@@ -131,7 +145,8 @@ class States(unittest.TestCase):
 
 class Tasks(unittest.TestCase):
     def test_gymnasiums_checker_passes_for_every_task_and_driver(self):
-        made = [(name, {}) for name in onetwo.env.TASKS]
+        made = [(name, mode) for name, task in onetwo.env.TASKS.items() for mode in modes(task)]
+        made += [("onetwo/Scenario3-v0", {"own": 4, "agents": 1, "teammates_by": "coach", "opponents_by": "two-defenders"})]
         made += [("onetwo/ShootAtKeeper-v0", {"opponents_by": by}) for by in OTHERS]
         made += [("onetwo/ThreeASide-v0", {"agents": 1, "teammates_by": "coach", "world": "random"})]
         for name, settings in made:
@@ -141,8 +156,8 @@ class Tasks(unittest.TestCase):
                 check_env(gymnasium.make(name, **settings).unwrapped)
 
     def test_drawn_actions_stay_within_the_spaces(self):
-        for task in TASKS:
-            env = onetwo.env.TaskEnv(task=task, world="random")
+        for task, mode in [(task, mode) for task in TASKS for mode in modes(task)]:
+            env = onetwo.env.TaskEnv(task=task, **mode)
             env.action_space.seed(1)
             observation, _ = env.reset(seed=1)
             for _ in range(100 if task in MATCHES else 2000):
@@ -226,6 +241,37 @@ class Tasks(unittest.TestCase):
                 moved = [math.dist(state[side][n]["position"], start[side][n]["position"]) for n in robots]
                 self.assertGreater(max(moved), 0.1, (by, side, moved))
 
+    def test_a_legged_robot_grabs_the_ball_and_kicks_it(self):
+        simulator = onetwo.Simulator(1, 0, task="scenario-1", seed=2)
+        self.assertEqual((simulator.robots, simulator.period_ms), ((1, 1, 0), 40))
+        total, end = ended(simulator, lambda state: chase(state, 0)[:3] + [float(state["own"][0]["ball_contact"]), 1.0])
+        before = simulator.state()["ball"]["position"][0]
+        self.assertIn(end, ("goal", "close", "out"))
+        self.assertGreater(before, 2.6)
+        self.assertGreater(total, 2.0)
+
+    def test_trials_are_those_of_the_paper(self):
+        for task, opponents, outcomes in (("scenario-4", "scripted", 3), ("scenario-2", "two-defenders", 2)):
+            ends = set()
+            for seed in range(12):
+                simulator = onetwo.Simulator(4, task=task, agents=1, teammates_by="coach", opponents_by=opponents, seed=seed)
+                ends.add(ended(simulator, [0.0] * 5)[1])
+            self.assertLessEqual(ends, {"goal", "close", "lost", "out", "time"})
+            self.assertGreaterEqual(len(ends), outcomes - 1, (task, ends))
+
+    def test_what_is_sensed_follows_the_truth_late_and_with_noise(self):
+        truth, sensed = (onetwo.Simulator(2, 2, seed=5, observation=name) for name in ("truth", "sensed"))
+        np.testing.assert_array_equal(observed(truth), observed(sensed))
+        errors = []
+        for _ in range(60):
+            for simulator in (truth, sensed):
+                simulator.step([0.2, 0.1, 0.1, 0.0, 0.0] * 2)
+            errors.append(np.abs(np.array(observed(truth)) - observed(sensed))[:7])
+        self.assertEqual(truth.state(), sensed.state())
+        self.assertGreater(np.max(errors), 0.0)
+        # Places of ball and robot, as shares of half the field's length of 4.8 m: within 5 cm.
+        self.assertLess(np.max(np.array(errors)[20:, [0, 1, 5, 6]]), 0.01)
+
     def test_a_policy_moves_the_others(self):
         seen = []
 
@@ -256,6 +302,21 @@ class Tasks(unittest.TestCase):
             ("teammates_by", lambda: onetwo.Simulator(teammates_by="them")),
             ("opponents_by", lambda: onetwo.Simulator(opponents_by=3)),
             ("world", lambda: onetwo.Simulator(world="mars")),
+            ("observation", lambda: onetwo.Simulator(observation="guessed")),
+            ("observation", lambda: onetwo.Simulator(task="scenario-1", observation="sensed")),
+            ("world", lambda: onetwo.Simulator(task="scenario-1", world="random")),
+            ("league", lambda: onetwo.Simulator(task="scenario-1", league="division-b")),
+            ("league", lambda: onetwo.Simulator(league="four-legged")),
+            ("own", lambda: onetwo.Simulator(5, task="scenario-1")),
+            ("opponents", lambda: onetwo.Simulator(2, 3, task="scenario-1")),
+            ("period_ms", lambda: onetwo.Simulator(task="scenario-1", period_ms=50)),
+            ("teammates_by", lambda: onetwo.Simulator(task="scenario-1", teammates_by="zone")),
+            ("opponents_by", lambda: onetwo.Simulator(task="scenario-1", opponents_by="coach")),
+            ("opponents_by", lambda: onetwo.Simulator(opponents_by="two-defenders")),
+            ("opponents_by", lambda: onetwo.env.TaskEnv(task="scenario-1", opponents_by=lambda observation: observation)),
+            ("opponents_by", lambda: TaskParallelEnv(task="scenario-1", opponents_by="agents")),
+            ("place_ball", lambda: onetwo.Simulator(task="scenario-1").place_ball(0.0, 0.0)),
+            ("place_robot", lambda: onetwo.Simulator(task="scenario-1").place_robot(0, 0.0, 0.0)),
             ("own", lambda: onetwo.Simulator(1, task="pass-and-receive")),
             ("period_ms", lambda: onetwo.Simulator(task="3v3", period_ms=25)),
             ("opponent_actions", lambda: onetwo.Simulator(task="contested-ball").step([0.0] * 5, [0.0] * 5)),
@@ -282,8 +343,9 @@ class Tasks(unittest.TestCase):
 
 class Vectors(unittest.TestCase):
     def test_a_vector_plays_what_single_environments_play(self):
-        for task, count in [(task, 5) for task in SINGLE] + [("3v3", 2)]:
-            settings = {"task": task, "time_limit_s": 0.6, "world": "random"}
+        tried = [(task, 5, mode) for task in SINGLE for mode in modes(task)[-2:]] + [("3v3", 2, {"world": "random"})]
+        for task, count, mode in tried:
+            settings = {"task": task, "time_limit_s": 0.6, **mode}
             native = onetwo.env.TaskVectorEnv(count, threads=3, **settings)
             singles = SyncVectorEnv([lambda: onetwo.env.TaskEnv(**settings)] * count)
             self.assertIs(native.metadata["autoreset_mode"], AutoresetMode.NEXT_STEP)
@@ -324,7 +386,7 @@ class Vectors(unittest.TestCase):
 class Agents(unittest.TestCase):
     def test_pettingzoos_checkers_pass_for_every_task(self):
         for task in TASKS:
-            for by in (None, "agents"):
+            for by in (None,) if task in TRIALS else (None, "agents"):
                 cycles = 20 if task in MATCHES else 300
                 with self.subTest(task, by=by):
                     parallel_api_test(TaskParallelEnv(task=task, opponents_by=by), num_cycles=cycles)

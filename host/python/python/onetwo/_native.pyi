@@ -113,19 +113,21 @@ class Simulator:
         teammates_by: str = "none",
         opponents_by: str | None = None,
         world: str = "nominal",
-        league: str = "division-b",
+        observation: str = "truth",
+        league: str | None = None,
         period_ms: Whole | None = None,
         time_limit_s: Real | None = None,
         seed: Whole = 0,
     ) -> Simulator:
         """A simulator, with its first episode started. Raises ValueError for a value outside of these.
 
-        task: "score", "shoot-at-keeper", "pass-and-receive", "contested-ball", "keep-away", "3v3" or "6v6"; what is None
-        is the task's. own: robots of the own team, 1 to 11. opponents: 0 to 11. agents: own robots, from 0, that
+        task: "score", "shoot-at-keeper", "pass-and-receive", "contested-ball", "keep-away", "3v3", "6v6", or a trial of
+        the first paper, "scenario-1" to "scenario-4" or "scenario-random"; what is None is the task's. own: robots of the own team, 1 to 11. opponents: 0 to 11. agents: own robots, from 0, that
         `actions` move. teammates_by, opponents_by: who moves the others: "none", "scripted" (on the true state), "coach"
         (ours: brains, cases and coach, with cameras and radio), "reactive", "marking" or "zone" (the reference teams).
         world: "nominal", a profile of `onetwo play --world`, "random" (another one for each seed) or "random:SEED".
-        league: "division-b", "division-a" or "ssl-2013". period_ms: simulated time of a step, 1 to 100 ms, 25 unless
+        observation: "truth", or "sensed": what a host estimates from cameras. league: "division-b", "division-a" or
+        "ssl-2013"; "four-legged" for trials, whose periods are multiples of 40. period_ms: simulated time of a step, 1 to 100 ms, 25 unless
         given; a multiple of 10 where a coach, a reference team or the referee takes part, 30 unless given."""
     def reset(self, seed: Whole) -> None:
         """Starts another episode, from random start positions that follow from the seed alone."""
@@ -136,7 +138,7 @@ class Simulator:
         into: Buffer | None = None,
     ) -> tuple[float, str | None]:
         """Plays one period; returns the reward and how the episode ended: "goal", "own_goal", "out", "received", "won",
-        "lost", "time", or None while it goes on. A finished episode stays as it is.
+        "lost", "close", "time", or None while it goes on. A finished episode stays as it is.
 
         actions: `action_size` numbers, a buffer of float32 or a flat sequence. opponent_actions: five for each opponent,
         only with opponents_by="none"; they stand still without. into: see `observe`. Raises ValueError for another number
@@ -157,13 +159,14 @@ class Simulator:
     def _repr_svg_(self) -> str:
         """The picture of a notebook's cell."""
     def place_ball(self, x: Real, y: Real, vx: Real = 0.0, vy: Real = 0.0) -> None:
-        """Places the ball on the ground (m), rolling with that velocity (m/s)."""
+        """Places the ball on the ground (m), rolling with that velocity (m/s). Raises ValueError in trials, as does
+        `place_robot`."""
     def place_robot(self, index: Whole, x: Real, y: Real, heading: Real = 0.0, *, opponent: bool = False) -> None:
         """Places a robot at rest (m, rad): an own one by its index from 0, or an opponent."""
     def save(self) -> bytes:
         """The state of the episode: a simulator that restores it goes on bit for bit, in another process too.
 
-        Where a coach, a reference team or the referee takes part it holds the seed and all orders since, which `restore`
+        Where a coach, a reference team or the referee takes part, in trials and with observation="sensed" it holds the seed and all orders since, which `restore`
         plays again; else the whole state, and `restore` takes microseconds."""
     def restore(self, state: bytes) -> None:
         """Goes on from a saved state of a simulator with the same settings. Raises ValueError for foreign or damaged bytes,

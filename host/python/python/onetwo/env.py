@@ -29,6 +29,11 @@ TASKS = {
     "onetwo/KeepAway-v0": "keep-away",
     "onetwo/ThreeASide-v0": "3v3",
     "onetwo/SixASide-v0": "6v6",
+    "onetwo/Scenario1-v0": "scenario-1",
+    "onetwo/Scenario2-v0": "scenario-2",
+    "onetwo/Scenario3-v0": "scenario-3",
+    "onetwo/Scenario4-v0": "scenario-4",
+    "onetwo/ScenarioRandom-v0": "scenario-random",
 }
 SCORE = "onetwo/Score-v0"
 
@@ -41,6 +46,12 @@ there, and the first of these robots comes first."""
 def box(size: int) -> spaces.Box[np.float32]:
     """`size` values of float32 within ±1."""
     return spaces.Box(-1.0, 1.0, (size,), np.float32)
+
+
+def check_orders(simulator: Simulator, by: str) -> None:
+    """ValueError where the simulator's opponents take no orders."""
+    if simulator.task.startswith("scenario"):
+        raise ValueError(f"opponents_by: opponents of the task {simulator.task!r} take no orders of {by}")
 
 
 class TaskEnv(gymnasium.Env[Floats, Floats]):
@@ -79,6 +90,8 @@ class TaskEnv(gymnasium.Env[Floats, Floats]):
             opponents_by="none" if callable(opponents_by) else opponents_by,
             **settings,
         )
+        if self._opponents:
+            check_orders(self.simulator, "a policy")
         self._agents = self.simulator.robots[1]
         if self._teammates:
             # The policy's orders go the way of the agent's.

@@ -16,7 +16,7 @@ from pettingzoo import ParallelEnv  # type: ignore[import-untyped,unused-ignore]
 from ._native import Simulator
 from ._render import RENDER_MODES, WIDTH, Renderer, frames_per_second
 from ._saved import pack, unpack
-from .env import box
+from .env import box, check_orders
 
 
 class TaskParallelEnv(ParallelEnv):  # type: ignore[misc,unused-ignore]
@@ -41,6 +41,8 @@ class TaskParallelEnv(ParallelEnv):  # type: ignore[misc,unused-ignore]
     ) -> None:
         agents = opponents_by == "agents"
         self.simulator = Simulator(own, opponents, opponents_by="none" if agents else opponents_by, **settings)
+        if agents:
+            check_orders(self.simulator, "agents")
         self.render_mode = render_mode
         self._renderer = Renderer(render_mode, width, self.simulator)
         self.metadata = {**self.metadata, "render_fps": frames_per_second(self.simulator)}
