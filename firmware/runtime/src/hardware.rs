@@ -128,12 +128,7 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
             let before = parts.lost();
             let time = now();
             let [beam, radio] = boxes.doubted(time);
-            parts.step(
-                time,
-                &rolled,
-                seen.turn,
-                [beam, wires.charge_doubted.load(Ordering::Relaxed), radio],
-            );
+            parts.step(time, &rolled, seen.turn, [beam, wires.charge_doubted.load(Ordering::Relaxed), radio]);
             boxes.parts.lock(|report| report.set(parts.report()));
             if parts.lost() != before {
                 wires.lost.signal(parts.lost());
