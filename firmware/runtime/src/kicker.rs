@@ -106,8 +106,7 @@ impl ChargeWatch {
         self.from = Some((since, before, charged));
         if now.since(since) >= WATCHED_FOR {
             let least = before + if charged { RISE_MIN } else { -FALL_MAX };
-            // Not `volts < least`: an unreadable voltage is doubted too.
-            self.doubted = !(volts >= least);
+            self.doubted = volts.is_nan() || volts < least;
             self.from = None;
         }
         self.doubted
