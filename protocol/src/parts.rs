@@ -11,16 +11,22 @@ pub const KIND: u8 = 8;
 /// Bytes of the payload.
 pub const PAYLOAD_LEN: usize = 10;
 /// Parts that a report can name.
-pub const PARTS: u8 = 9;
+pub const PARTS: u8 = 12;
 
 /// A part of a robot on wheels: motors with their drivers 0 to 3, encoders 4 to 7 in the order of the wheels,
-/// and the gyroscope, 8.
+/// the gyroscope, 8, the break-beam sensor, 9, the kicker's capacitor with its charger, 10, the radio, 11.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Part(u8);
 
 impl Part {
     /// The gyroscope.
     pub const GYROSCOPE: Self = Self(8);
+    /// The break-beam sensor.
+    pub const BREAK_BEAM: Self = Self(9);
+    /// The kicker's capacitor and its charger.
+    pub const CHARGER: Self = Self(10);
+    /// The radio chip, or the line to it.
+    pub const RADIO: Self = Self(11);
 
     /// Motor and driver of a wheel, 0 to 3.
     pub const fn motor(wheel: u8) -> Self {
@@ -48,7 +54,10 @@ impl fmt::Display for Part {
         match self.0 {
             wheel @ 0..4 => write!(f, "{} motor or its driver", wheel_name(wheel)),
             wheel @ 4..8 => write!(f, "{} encoder", wheel_name(wheel - 4)),
-            _ => f.write_str("gyroscope"),
+            8 => f.write_str("gyroscope"),
+            9 => f.write_str("break-beam sensor"),
+            10 => f.write_str("capacitor or its charger"),
+            _ => f.write_str("radio or its line"),
         }
     }
 }
@@ -67,7 +76,7 @@ pub enum PartState {
     Ok = 0,
     /// What is measured would be explained by its failure.
     Suspected = 1,
-    /// That has lasted; until the robot's next start the part is not used.
+    /// That has lasted; until the robot's next start the part is not used where others replace it.
     Failed = 2,
 }
 
@@ -168,10 +177,13 @@ mod tests {
             .with(Part::GYROSCOPE, PartState::Ok);
         assert_eq!(PartsReport::read(&report.payload()), Some(report));
         assert_eq!(report.in_state(PartState::Failed).collect::<Vec<_>>(), [Part::encoder(1)]);
+        let last = [Part::BREAK_BEAM, Part::CHARGER, Part::RADIO];
+        let all_last = last.iter().fold(report, |report, part| report.with(*part, PartState::Failed));
+        assert_eq!(PartsReport::read(&all_last.payload()), Some(all_last));
         let said =
             "front left motor or its driver suspected, back right encoder failed for 1.7 s (explains 93 %)";
         assert_eq!(report.to_string(), said);
-        let wrong = [(1, 3), (3, 4), (5, PARTS), (0, 7)];
+        let wrong = [(1, 3), (4, 1), (5, PARTS), (0, 7)];
         for (at, byte) in wrong {
             let mut payload = report.payload();
             payload[at] = byte;

@@ -91,6 +91,10 @@ impl<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs> RadioReceiver for Chip
             Timer::after(IRQ_POLL_PERIOD).await;
         }
     }
+
+    fn faults(&self) -> u32 {
+        self.robot.counts().restarts
+    }
 }
 
 /// Tells whether the chip has to be served. A line that cannot be read counts as low.

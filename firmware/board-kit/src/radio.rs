@@ -54,6 +54,10 @@ impl<R: Read> RadioReceiver for UartReceiver<R> {
             self.rest = (0, self.bytes().await.len());
         }
     }
+
+    fn faults(&self) -> u32 {
+        line_errors()
+    }
 }
 
 /// Sends frames, one COBS line at a time.

@@ -15,6 +15,8 @@ use crate::{Board, TARGET, TargetError, boards, ensure_target_of};
 
 /// Environment variable of an image's build: the hash of its sources, hexadecimal.
 const SOURCE_HASH: &str = "ONETWO_IMAGE";
+/// As [`Board::profile`] for the image that runs by its own clock, whose steps are not counted: 1.3 kB less.
+const SMALL_TASKS: &str = "profile.firmware.package.board-mps2.opt-level=\"z\"";
 
 /// The firmware of a robot with that body for [`MACHINE`](crate::MACHINE), built first where it is missing or
 /// older than its sources.
@@ -84,6 +86,9 @@ fn build_as(
     }
     if let Program::Free | Program::Udp = program {
         build.args(["--no-default-features", "--features", ImageBody::Omni.label()]);
+    }
+    if program == Program::Free {
+        build.args(["--config", SMALL_TASKS]);
     }
     if program == Program::Udp {
         build.args(["--features", "ethernet"]);

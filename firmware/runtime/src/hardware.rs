@@ -12,14 +12,16 @@
 //! and sensor frames go through the channels of [`Mailboxes`], which count what they drop.
 
 use core::pin::pin;
+use core::sync::atomic::{AtomicBool, Ordering};
 
 use embassy_futures::select::{Either, select};
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Duration, Ticker, Timer};
+use protocol::parts::{Part, PartState};
 use protocol::robot_io::{Health, OmniKick, SensorFrame, WHEELED_STEP};
 
-use crate::kicker::{Interlock, KickerAct};
+use crate::kicker::{ChargeWatch, Interlock, KickerAct};
 use crate::mailboxes::{Arrival, Mailboxes};
 use crate::parts::{Means, PartsEstimator, Rolled};
 use crate::ports::{Kicker, Probes, RadioReceiver, Watchdog, WheelsPort};
@@ -37,12 +39,20 @@ pub struct Wires {
     lost: Signal<CriticalSectionRawMutex, Lost>,
     /// Newest request to the kicker.
     request: Signal<CriticalSectionRawMutex, OmniKick>,
+    /// The capacitor's voltage does not follow what the kicker is told.
+    charge_doubted: AtomicBool,
 }
 
 impl Wires {
     /// Signals of which none is set.
     pub const fn new() -> Self {
-        Self { rims: Signal::new(), rolled: Signal::new(), lost: Signal::new(), request: Signal::new() }
+        Self {
+            rims: Signal::new(),
+            rolled: Signal::new(),
+            lost: Signal::new(),
+            request: Signal::new(),
+            charge_doubted: AtomicBool::new(false),
+        }
     }
 }
 
@@ -84,14 +94,16 @@ pub async fn control(mut wheels: impl WheelsPort, boxes: &Mailboxes, wires: &Wir
 
 /// Charges and fires, as far as the interlock allows.
 pub async fn kicker(mut kicker: impl Kicker, wires: &Wires) -> ! {
-    let mut interlock = Interlock::new();
+    let (mut interlock, mut watch) = (Interlock::new(), ChargeWatch::new());
     loop {
         // The control loop requests it every millisecond; once it stops, the kicker must not fire.
         let request = match select(wires.request.wait(), Timer::after(CONTROL_SILENT_AFTER)).await {
             Either::First(request) => request,
             Either::Second(()) => OmniKick::Discharge,
         };
-        let act = interlock.step(now(), request, kicker.state());
+        let (now, state) = (now(), kicker.state());
+        let act = interlock.step(now, request, state);
+        wires.charge_doubted.store(watch.step(now, act, state.volts), Ordering::Relaxed);
         kicker.act(act).await;
         if matches!(act, KickerAct::Flat(_) | KickerAct::Chip(_)) {
             // A request made while the coil had current is outdated.
@@ -114,7 +126,9 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
         let seen = probes.look();
         if let Some(rolled) = wires.rolled.try_take() {
             let before = parts.lost();
-            parts.step(now(), &rolled, seen.turn);
+            let time = now();
+            let [beam, radio] = boxes.doubted(time);
+            parts.step(time, &rolled, seen.turn, [beam, wires.charge_doubted.load(Ordering::Relaxed), radio]);
             boxes.parts.lock(|report| report.set(parts.report()));
             if parts.lost() != before {
                 wires.lost.signal(parts.lost());
@@ -127,7 +141,8 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
             pose: None,
             ball: None,
             opponents: heapless::Vec::new(),
-            ball_contact: seen.ball,
+            // A sensor that has failed is no ball: the host's is left.
+            ball_contact: seen.ball && parts.report().state(Part::BREAK_BEAM) != PartState::Failed,
             busy: false,
             odometry,
             health,
@@ -155,6 +170,7 @@ pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> 
         };
         boxes.room_for_arrival().await;
         boxes.deliver(Arrival::Packet(packet));
+        boxes.note_radio(now(), radio.faults());
     }
 }
 

@@ -80,6 +80,39 @@ impl Default for Interlock {
     }
 }
 
+/// Whether the capacitor's voltage follows what the kicker is told.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct ChargeWatch {
+    /// When the voltage was noted, that voltage, and whether it was charged all the time since.
+    from: Option<(Instant, f32, bool)>,
+    doubted: bool,
+}
+
+impl ChargeWatch {
+    /// A capacitor that is not doubted yet.
+    pub const fn new() -> Self {
+        Self { from: None, doubted: false }
+    }
+
+    /// Takes what the kicker is told and the voltage; returns whether it is doubted: it hardly rose while it
+    /// was charged for [`WATCHED_FOR`], or fell by more than leaks without a kick, or cannot be read.
+    pub fn step(&mut self, now: Instant, act: KickerAct, volts: f32) -> bool {
+        if matches!(act, KickerAct::Flat(_) | KickerAct::Chip(_) | KickerAct::Bleed) {
+            self.from = None;
+            return self.doubted;
+        }
+        let (since, before, charged) = self.from.unwrap_or((now, volts, true));
+        let charged = charged && act == KickerAct::Charge;
+        self.from = Some((since, before, charged));
+        if now.since(since) >= WATCHED_FOR {
+            let least = before + if charged { RISE_MIN } else { -FALL_MAX };
+            self.doubted = volts.is_nan() || volts < least;
+            self.from = None;
+        }
+        self.doubted
+    }
+}
+
 /// Pulse length for a ball speed; `None` for an invalid speed. Never longer than the table's last.
 fn pulse(speed: f32, table: &[(f32, u64)]) -> Option<Duration> {
     if !speed.is_finite() || speed <= 0.0 {
@@ -105,6 +138,13 @@ const CHIP_PULSE: &[(f32, u64)] = SPEC.chip_pulses;
 pub const FULL_VOLTS: f32 = SPEC.full_volts;
 /// Voltage below which the capacitor is safe to touch, V.
 const EMPTY_VOLTS: f32 = SPEC.empty_volts;
+/// Time over which a charge is watched: less than a suspicion has to last, so that two in a row make a failure.
+const WATCHED_FOR: Duration = Duration::millis(300);
+/// Least rise in that time while it is charged, V: 10 V/s, a tenth of what a charger gives that fills it in 2 s
+/// (estimate; teams publish 1 to 3 s).
+const RISE_MIN: f32 = 0.015 * FULL_VOLTS;
+/// Greatest fall in that time without a kick, V (estimate: a capacitor leaks less in a minute).
+const FALL_MAX: f32 = 0.1 * FULL_VOLTS;
 /// Least time between two kicks.
 const KICK_PAUSE: Duration = Duration::millis(SPEC.pause_ms);
 
@@ -147,6 +187,30 @@ mod tests {
         ] {
             assert_eq!(interlock.step(Instant(0), OmniKick::Discharge, state(true, volts)), act, "{volts}");
         }
+    }
+
+    #[test]
+    fn a_capacitor_is_doubted_that_does_not_rise_falls_by_itself_or_cannot_be_read() {
+        // Ten volts a second and less, 66 V/s and more; a kick, and a charge after it, are no leak.
+        type Volts = fn(u64) -> f32;
+        let cases: [(KickerAct, Volts, bool); 6] = [
+            (KickerAct::Charge, |ms| 100.0 + 0.1 * ms as f32, false),
+            (KickerAct::Charge, |ms| 100.0 + 0.005 * ms as f32, true),
+            (KickerAct::Rest, |ms| 210.0 - 0.01 * ms as f32, false),
+            (KickerAct::Rest, |ms| 210.0 - 0.1 * ms as f32, true),
+            (KickerAct::Rest, |_| f32::NAN, true),
+            (KickerAct::Bleed, |ms| 210.0 - 0.2 * ms as f32, false),
+        ];
+        for (number, (act, volts, wrong)) in cases.into_iter().enumerate() {
+            let mut watch = ChargeWatch::new();
+            let mut step = |ms: u64| watch.step(Instant(1_000 * ms), act, volts(ms));
+            assert!((0..300).all(|ms| !step(ms)), "{number}");
+            assert_eq!((300..700).any(&mut step), wrong, "{number}");
+        }
+        let (mut watch, fired) = (ChargeWatch::new(), KickerAct::Flat(Duration(2_600)));
+        let act = |ms| if ms == 250 { fired } else { KickerAct::Charge };
+        let volts = |ms| if ms < 250 { 210.0 } else { 60.0 + 0.1 * (ms - 250) as f32 };
+        assert!((0..1_500).all(|ms| !watch.step(Instant(1_000 * ms), act(ms), volts(ms))));
     }
 
     #[test]

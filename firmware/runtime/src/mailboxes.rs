@@ -3,12 +3,13 @@
 
 use core::cell::Cell;
 use core::future::poll_fn;
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
+use protocol::Instant;
 use protocol::link::Packet;
 use protocol::parts::PartsReport;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
@@ -45,6 +46,10 @@ pub struct Mailboxes {
     pub(crate) progress: TaskProgress,
     /// The newest report of the robot's parts.
     pub(crate) parts: Mutex<CriticalSectionRawMutex, Cell<PartsReport>>,
+    /// The host's ball contradicts the break-beam sensor.
+    pub(crate) beam_doubted: AtomicBool,
+    /// The radio's faults, and when the last came, ms of the robot's clock, wrapping; 0: none came.
+    radio_faults: (AtomicU32, AtomicU32),
     unsent: AtomicU32,
     undelivered: AtomicU32,
 }
@@ -58,6 +63,8 @@ impl Mailboxes {
             orders: Signal::new(),
             progress: TaskProgress::new(),
             parts: Mutex::new(Cell::new(PartsReport::new())),
+            beam_doubted: AtomicBool::new(false),
+            radio_faults: (AtomicU32::new(0), AtomicU32::new(0)),
             unsent: AtomicU32::new(0),
             undelivered: AtomicU32::new(0),
         }
@@ -82,6 +89,20 @@ impl Mailboxes {
     /// Returns whether the next arrival has to wait.
     pub fn is_full(&self) -> bool {
         self.inbox.is_full()
+    }
+
+    /// Takes the number of faults that the radio has counted since its start.
+    pub fn note_radio(&self, now: Instant, faults: u32) {
+        if self.radio_faults.0.swap(faults, Ordering::Relaxed) != faults {
+            self.radio_faults.1.store(ms(now).max(1), Ordering::Relaxed);
+        }
+    }
+
+    /// Whether break-beam sensor and radio are doubted now.
+    pub(crate) fn doubted(&self, now: Instant) -> [bool; 2] {
+        let last = self.radio_faults.1.load(Ordering::Relaxed);
+        let radio = last != 0 && ms(now).wrapping_sub(last) < RADIO_DOUBTED_MS;
+        [self.beam_doubted.load(Ordering::Relaxed), radio]
     }
 
     /// Records that a part of the robot runs, where a board has a task of its own for it.
@@ -109,6 +130,14 @@ impl Mailboxes {
         }
     }
 }
+
+fn ms(now: Instant) -> u32 {
+    (now.0 / 1_000) as u32
+}
+
+/// A radio is doubted for this time after a fault, ms: less than a suspicion has to last, so that one fault is
+/// no failure, and a chip that is set up again at every check of 25 ms is.
+const RADIO_DOUBTED_MS: u32 = 300;
 
 impl Default for Mailboxes {
     fn default() -> Self {

@@ -6,6 +6,9 @@
 //! | encoder, gyroscope | four rims and a gyroscope measure three motions: what they contradict each other by vanishes without one of them |
 //! | motor or driver | the body's acceleration against the efforts (duty cycles less what the speeds need): they fit without one of them |
 //! | encoder | the board reports NaN: driven hard without moving |
+//! | break-beam sensor | the host's ball contradicts it (`brain::belief`) |
+//! | capacitor, charger | the voltage does not follow what the kicker is told (`kicker`) |
+//! | radio | its chip was set up again, or its line erred (`mailboxes`) |
 //!
 //! A part is suspected while leaving it out explains what all together do not, and failed once that has
 //! lasted. It stays so until the next start, and is not used: the others give the same motion
@@ -149,38 +152,45 @@ impl PartsEstimator {
                 self.lost.encoders |= 1 << (wheel - 4);
                 self.whole = without(usize::from(wheel - 4));
             }
-            4..8 => {}
-            _ => self.lost.gyroscope = true,
+            8 => self.lost.gyroscope = true,
+            _ => {}
         }
     }
 
-    /// Takes the readings of the last 10 ms.
-    pub fn step(&mut self, now: Instant, rolled: &Rolled, gyroscope: Option<f32>) {
+    /// Takes the readings of the last 10 ms, and which others are doubted where they work.
+    pub fn step(&mut self, now: Instant, rolled: &Rolled, gyroscope: Option<f32>, doubted: Doubted) {
         let mut suspects = [None; PARTS as usize];
+        self.contradictory(rolled, gyroscope, &mut suspects);
+        for (doubted, suspect) in doubted.into_iter().zip(suspects.iter_mut().skip(FIRST_DOUBTED)) {
+            *suspect = doubted.then_some(1.0);
+        }
+        self.judge(now, &suspects);
+    }
+
+    fn contradictory(&mut self, rolled: &Rolled, gyroscope: Option<f32>, suspects: &mut Suspects) {
         for (wheel, rim) in (0_u8..).zip(rolled.rims) {
             if !rim.is_finite() && self.report.state(Part::motor(wheel)) != PartState::Failed {
-                suspect(&mut suspects, Part::encoder(wheel), 1.0);
+                suspect(suspects, Part::encoder(wheel), 1.0);
             }
         }
         if self.had_gyroscope && gyroscope.is_none() {
-            suspect(&mut suspects, Part::GYROSCOPE, 1.0);
+            suspect(suspects, Part::GYROSCOPE, 1.0);
         }
         self.had_gyroscope |= gyroscope.is_some();
         let whole = rolled.rims.iter().all(|rim| rim.is_finite()) && self.lost == Lost::default();
         if whole && RobotSpec::OURS.wheels.count as usize == WHEELS {
             self.accelerate(rolled);
-            self.idle_motor(&mut suspects);
+            self.idle_motor(suspects);
             if let Some(turn) = gyroscope {
                 let largest = rolled.efforts.iter().fold(0.0, |most: f32, effort| most.max(effort.abs()));
                 decay(&mut self.strain, largest, CONTRADICTION_SHARE);
                 self.contradict(&rolled.rims, turn);
                 // With three motors wheels slip, and contradict each other.
                 if suspects.iter().all(Option::is_none) {
-                    self.least_contradiction(&mut suspects);
+                    self.least_contradiction(suspects);
                 }
             }
         }
-        self.judge(now, &suspects);
     }
 
     fn contradict(&mut self, rims: &[f32; WHEELS], turn: f32) {
@@ -317,6 +327,12 @@ impl Efforts {
         }
     }
 }
+
+/// Break-beam sensor, capacitor with charger, radio: whether each is doubted where it works.
+pub type Doubted = [bool; 3];
+
+/// Number of the first of them.
+const FIRST_DOUBTED: usize = Part::BREAK_BEAM.number() as usize;
 
 /// Share of its contradiction or misfit that the failure of a part explains; none: not suspected.
 type Suspects = [Option<f32>; PARTS as usize];

@@ -18,6 +18,11 @@ use crate::wheel::WHEELS;
 pub trait RadioReceiver {
     /// The next packet received, not yet authenticated.
     async fn receive(&mut self) -> Packet;
+
+    /// Faults since the start: restarts of a chip, errors of a line.
+    fn faults(&self) -> u32 {
+        0
+    }
 }
 
 /// The sender of a radio.

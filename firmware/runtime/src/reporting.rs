@@ -2,6 +2,7 @@
 //! second which of its parts have failed, once one is suspected.
 
 use core::cell::Cell;
+use core::sync::atomic::Ordering;
 
 use brain::Station;
 use protocol::link::Packet;
@@ -59,6 +60,8 @@ impl Controller for Reporting<'_, '_> {
     }
     fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.station.handle_sensors(now, sensors);
+        let doubts = self.station.brain().belief().doubts_break_beam(now);
+        self.boxes.beam_doubted.store(doubts, Ordering::Relaxed);
     }
     fn handle_timeout(&mut self, now: Instant) {
         self.station.handle_timeout(now);

@@ -27,6 +27,8 @@ pub(super) struct Handling {
     height: f32,
     /// Break-beam sensor in the present step.
     contact: bool,
+    /// Since when the host's ball contradicts the break-beam sensor.
+    contradicted: Option<Instant>,
     /// Start time of this touch.
     since: Option<Instant>,
     /// Duration of this touch, s.
@@ -76,6 +78,12 @@ impl Belief {
     /// Whether the break-beam sensor sees the ball in the present step.
     pub fn contact(&self) -> bool {
         self.handling.contact
+    }
+
+    /// Whether the break-beam sensor contradicts the host's ball for longer than play can: interrupted with
+    /// the ball elsewhere, or free with the ball within the opening.
+    pub fn doubts_break_beam(&self, now: Instant) -> bool {
+        self.handling.contradicted.is_some_and(|since| now.since(since) >= CONTRADICTED_FOR)
     }
 
     /// Whether the ball flies.
@@ -130,6 +138,16 @@ impl Belief {
             self.handling.touched = Some(now);
         }
         let received = self.ball.map(|ball| ball.position);
+        let contradicts = received.is_some_and(|at| {
+            if contact {
+                self.pose.position.distance(at) > BEAM_ENDS
+            } else {
+                let seen = self.pose.to_body(at);
+                !self.ball_flies() && seen.x() < BALL_AT && seen.x() > FRONT && seen.y().abs() < WITHIN
+            }
+        });
+        let handling = &mut self.handling;
+        handling.contradicted = contradicts.then_some(handling.contradicted.unwrap_or(now));
         let at_dribbler = received.is_some_and(|at| is_at_dribbler(self.pose, at));
         let recent = self.handling.touched.is_some_and(|last| now.since(last) <= BRIDGED);
         self.holds_ball = contact || (recent && at_dribbler);
@@ -184,6 +202,13 @@ const BRIDGED: Duration = Duration::millis(60);
 const AT_BALL: f32 = 0.2;
 /// A faster ball is not stuck between two robots, m/s.
 const STUCK_SPEED_MAX: f32 = 0.5;
+/// Ball and break-beam sensor contradict each other for this time before it is doubted: a robot of 3 m/s
+/// passes the host's delay of 0.1 s five times in it (estimate; judged in matches).
+const CONTRADICTED_FOR: Duration = Duration::millis(500);
+/// No ball whose centre is this far from the robot's interrupts the beam, m: three balls before the opening.
+const BEAM_ENDS: f32 = BALL_AT + 0.2;
+/// A ball this far beside the middle interrupts the beam certainly, m: half of a mouth of 35 mm to each side.
+const WITHIN: f32 = 0.015;
 /// A gap between ball and dribbler opening that counts as visible by the rules, m.
 const VISIBLE_GAP: f32 = 0.05;
 /// How far before the roller the host may show a ball that is held, m: noise, and 30 ms of its delay.

@@ -8,6 +8,7 @@ use protocol::robot_io::{ActuatorFrame, OmniKick};
 use chassis::{Chance, Chassis, PartFault};
 
 mod chassis;
+mod in_match;
 mod places;
 
 /// A driver who goes on as in a match: runs, turns, stops; pushed by others now and then.

@@ -7,7 +7,7 @@ use protocol::Instant;
 use protocol::parts::PartsReport;
 use protocol::robot_io::ActuatorFrame;
 use rules::RobotSpec;
-use runtime::parts::{Means, PartsEstimator};
+use runtime::parts::{Doubted, Means, PartsEstimator};
 use runtime::sense::Encoder;
 use runtime::wheel::{Control, Motors, WHEELS};
 
@@ -39,6 +39,10 @@ pub(crate) enum PartFault {
     GyroscopeStuck,
     /// A gyroscope that reports this much too much, rad/s.
     GyroscopeOff(f32),
+    /// A break-beam sensor that always sees a ball.
+    BeamStuck,
+    /// A kicker's board without supply: its capacitor empties, and is not charged.
+    ChargerDead,
 }
 
 /// One robot.
@@ -59,6 +63,8 @@ pub(crate) struct Chassis {
     pub(crate) twist: Twist<Body>,
     /// Force on the body from outside, N.
     pub(crate) push: Vector<Body>,
+    /// Break-beam sensor, capacitor with charger, and radio are doubted where they work.
+    pub(crate) doubted: Doubted,
     fault: Option<PartFault>,
     noise: Chance,
     ms: u64,
@@ -80,6 +86,7 @@ impl Chassis {
             gyroscope: 0.0,
             twist: Twist::default(),
             push: Vector::default(),
+            doubted: [false; 3],
             fault: None,
             noise: Chance::new(seed),
             ms: 0,
@@ -101,6 +108,11 @@ impl Chassis {
         self.estimator.odometry(self.read, Some(self.gyroscope))
     }
 
+    /// Its clock.
+    pub(crate) fn now(&self) -> Instant {
+        Instant(self.ms * 1_000)
+    }
+
     /// Takes an order and drives for 10 ms.
     pub(crate) fn drive(&mut self, order: ActuatorFrame) {
         self.control.take_orders(Instant(self.ms * 1_000), order);
@@ -116,7 +128,7 @@ impl Chassis {
         let output = self.control.step(now, self.read);
         self.duty = if let Motors::Driven(duty) = output.motors { duty } else { [0.0; WHEELS] };
         if let Some(rolled) = self.means.add(self.read, output.motors) {
-            self.estimator.step(now, &rolled, Some(self.gyroscope));
+            self.estimator.step(now, &rolled, Some(self.gyroscope), self.doubted);
             self.control.lose(self.estimator.lost());
         }
         for _ in 0..SUBSTEPS {
