@@ -39,7 +39,8 @@ pub(crate) struct QueryKey {
     pub(crate) ball: [f32; 2],
     /// The exponent at the end of scopes.
     pub(crate) limit: f32,
-    robots: usize,
+    /// Number of robots that are present.
+    pub(crate) robots: usize,
 }
 
 impl QueryKey {
@@ -49,6 +50,12 @@ impl QueryKey {
         if usize::from(record_header.teammates) > self.robots {
             return None;
         }
+        self.exponent_in_scope(record_header)
+    }
+
+    /// The ball's exponent in the case's scope, where it lies inside.
+    #[inline]
+    pub(crate) fn exponent_in_scope(&self, record_header: &RecordHeader) -> Option<f32> {
         let exponent = record_header.exponent(self.ball);
         (exponent < self.limit).then_some(exponent)
     }

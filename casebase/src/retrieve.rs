@@ -85,17 +85,34 @@ pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Retrieva
         }
         let mut search = BestSearch { base, query, class: Class(0), best: None };
         let key = query.key;
-        let (list, flip) = base.near(key.ball, problem.defending);
-        for id in list {
+        let (mut list, flip) = base.near(key.ball, problem.defending);
+        while let Some((id, rest)) = list.split_first() {
+            list = rest;
             let id = usize::from(*id) ^ flip;
             let Some(record_header) = base.record_headers.get(id) else { continue };
-            let Some(exponent) = key.exponent(record_header) else { continue };
+            if usize::from(record_header.teammates) > key.robots {
+                list = beyond(list, base, flip, record_header.opponents, key.robots);
+                continue;
+            }
+            let Some(exponent) = key.exponent_in_scope(record_header) else { continue };
             if search.consider(CaseId(id as u16), record_header, exponent).is_break() {
                 break;
             }
         }
         search.best.map(Found::into_match)
     })
+}
+
+/// The part of a sorted list behind the cases that have this number of opponents and more than `robots`
+/// robots.
+#[inline(never)]
+fn beyond<'l>(list: &'l [u16], base: &CaseBase<'_>, flip: usize, opponents: u8, robots: usize) -> &'l [u16] {
+    let too_many = |id: &u16| {
+        let record_header = base.record_headers.get(usize::from(*id) ^ flip);
+        record_header
+            .is_some_and(|header| header.opponents >= opponents && usize::from(header.teammates) > robots)
+    };
+    list.get(list.partition_point(too_many)..).unwrap_or(&[])
 }
 
 /// Returns whether these are the choices of the paper, for which the bounds hold and the fast path is
@@ -202,14 +219,14 @@ impl<'a> BestSearch<'_, 'a> {
     fn judge(&mut self, id: CaseId, record_header: &'a RecordHeader, exponent: f32, class: Class) {
         let Self { base, query, .. } = *self;
         let case = &Stored { base, id, record_header };
-        if query.is_crisply_blocked(case) || query.unmet_demand(case).is_some() {
-            return;
-        }
         let Some(nearest) = query.nearest(case) else { return };
         if class == self.class
             && let Some(candidate) = &self.best
             && nearest.players.cost > candidate.key.cost
         {
+            return;
+        }
+        if query.is_crisply_blocked(case) || query.unmet_demand(case).is_some() {
             return;
         }
         let Some(players) = query.least_sum(case, nearest) else { return };

@@ -51,6 +51,7 @@ pub(super) fn assign(
     let mut giving = Giving {
         view,
         settings,
+        threat: threat.at,
         edge: Edge::of(&view.field, settings.off_area),
         free: view
             .ours
@@ -97,6 +98,8 @@ fn held_task(threat: &FirstLevel, memory: &Memory) -> Option<Kept> {
 struct Giving<'v> {
     view: &'v View,
     settings: &'v ThreatSettings,
+    /// Place of the first-level threat.
+    threat: Point<Attack>,
     edge: Edge,
     free: heapless::Vec<ViewRobot, ROBOTS_MAX>,
     given: Assignments,
@@ -217,7 +220,11 @@ impl Giving<'_> {
         for (rank, position) in positions.iter().enumerate() {
             let (opponent, blocks) = (position.danger.opponent, position.blocks);
             let had = holder(opponent, blocks);
-            if self.is_taken(position.at, had.is_some()) {
+            if self.free.is_empty() && spare.is_none() {
+                break;
+            }
+            let at = position.place(self.view, self.threat, self.settings);
+            if self.is_taken(at, had.is_some()) {
                 continue;
             }
             let on_edge = spare.filter(|_| blocks == Blocks::Shot).and_then(|spare| {
@@ -227,7 +234,7 @@ impl Giving<'_> {
             let candidates = self.free.iter().chain(on_edge.as_ref().map(|(robot, _)| robot));
             let chosen = roles::choose(candidates, had, self.settings.worth, |robot| {
                 let place = on_edge.filter(|(spare, _)| spare.id == robot.id).map(|(_, place)| place);
-                let to_go = robot.position.distance(place.unwrap_or(position.at));
+                let to_go = robot.position.distance(place.unwrap_or(at));
                 // A robot with another task that is still wanted keeps that, or one new task would move all
                 // robots.
                 let has_other = had != Some(robot.id) && wanted.contains(&robot.id);
@@ -240,7 +247,7 @@ impl Giving<'_> {
             }
             let Danger { open, time_to_shoot, .. } = position.danger;
             let guards = Guards::SecondLevel { opponent, blocks, rank, open, time_to_shoot };
-            self.give(robot, place.unwrap_or(position.at), guards);
+            self.give(robot, place.unwrap_or(at), guards);
             // At most one per robot.
             let _ = kept.push(Kept { robot, opponent, blocks });
         }

@@ -19,7 +19,7 @@ const PASS_ARRIVAL_M_S: f32 = 2.5;
 /// Fastest shot, m/s: the rules' 6.5 less a kicker's error.
 const SHOT_SPEED_M_S: f32 = 6.2;
 
-/// An opponent as a second-level threat, with its two positions.
+/// An opponent as a second-level threat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Danger {
     /// Number of the opponent.
@@ -32,10 +32,6 @@ pub struct Danger {
     pub open: f32,
     /// Time until it could have shot: the pass to it and the shot, s.
     pub time_to_shoot: f32,
-    /// Place where its shot is blocked, and the share of the distance from our goal to it, 0–1.
-    pub block_shot: (Point<Attack>, f32),
-    /// Place where the pass to it is blocked.
-    pub block_pass: Point<Attack>,
 }
 
 /// Ball that a defender's position blocks.
@@ -54,8 +50,6 @@ pub struct Position {
     pub danger: Danger,
     /// Whether the shot is blocked, or the pass.
     pub blocks: Blocks,
-    /// Place for the defender's centre, m.
-    pub at: Point<Attack>,
     /// Bonus of a position that a robot has already, as shares of the settings' worths.
     held: f32,
 }
@@ -82,7 +76,7 @@ pub fn dangers(
             continue;
         }
         // At most one per robot.
-        let danger = Danger { near: is_near, ..danger(view, threat.at, cover, robot, settings) };
+        let danger = Danger { near: is_near, ..danger(view, threat.at, cover, robot) };
         let _ = dangers.push(danger);
     }
     memory.near = near;
@@ -98,13 +92,7 @@ fn holder(view: &View, threat: &FirstLevel) -> Option<RobotId> {
 }
 
 /// The danger of one opponent, before it is known whether it is near.
-fn danger(
-    view: &View,
-    threat: Point<Attack>,
-    cover: &Cover,
-    robot: &ViewRobot,
-    settings: &ThreatSettings,
-) -> Danger {
+fn danger(view: &View, threat: Point<Attack>, cover: &Cover, robot: &ViewRobot) -> Danger {
     let (at, goal) = (robot.position, view.our_goal());
     let opening = Opening::of(at, goal, view.field.goal_width);
     let bodies = cover.primaries.iter().copied().chain([cover.keeper]);
@@ -115,8 +103,6 @@ fn danger(
         near: false,
         open: widest(&gaps),
         time_to_shoot: time_to_shoot(threat.distance(at), at.distance(goal)),
-        block_shot: block_shot(view, at, settings),
-        block_pass: legal(view, at + (threat - at) * 0.5, settings),
     }
 }
 
@@ -164,11 +150,10 @@ pub fn ranked(
 ) -> heapless::Vec<Position, { 2 * ROBOTS_MAX }> {
     let mut positions: heapless::Vec<Position, { 2 * ROBOTS_MAX }> = heapless::Vec::new();
     for danger in dangers {
-        let both = [(Blocks::Shot, danger.block_shot.0), (Blocks::Pass, danger.block_pass)];
-        for (blocks, at) in both {
+        for blocks in [Blocks::Shot, Blocks::Pass] {
             let held = if held(danger.opponent, blocks) { 1.0 } else { 0.0 };
             // Two for each danger fit.
-            let _ = positions.push(Position { danger: *danger, blocks, at, held });
+            let _ = positions.push(Position { danger: *danger, blocks, held });
         }
     }
     positions.sort_unstable_by(|a, b| a.compare(b, settings));
@@ -176,6 +161,15 @@ pub fn ranked(
 }
 
 impl Position {
+    /// Place for the defender's centre against that first-level threat, m.
+    pub fn place(&self, view: &View, threat: Point<Attack>, settings: &ThreatSettings) -> Point<Attack> {
+        let at = self.danger.at;
+        match self.blocks {
+            Blocks::Shot => block_shot(view, at, settings).0,
+            Blocks::Pass => legal(view, at + (threat - at) * 0.5, settings),
+        }
+    }
+
     fn compare(&self, other: &Self, settings: &ThreatSettings) -> Ordering {
         let open = |p: &Self| (p.danger.open + p.held * settings.open_worth).min(settings.open_enough);
         let time = |p: &Self| p.danger.time_to_shoot - p.held * settings.time_worth;
@@ -225,10 +219,12 @@ mod tests {
         let cover = super::super::cover::cover(&view, threat.at, 2, None, &settings);
         let found = dangers(&view, &threat, &cover, &mut memory, &settings);
         let [danger] = found[..] else { panic!("{found:?}") };
-        assert!(danger.block_pass.distance(Point::new(0.0, 0.0)) < 1e-5);
+        let places = ranked(&[danger], |_, _| false, &settings);
+        let [shot, pass] = [0, 1].map(|n| places[n].place(&view, threat.at, &settings));
+        assert!(pass.distance(Point::new(0.0, 0.0)) < 1e-5);
         // 0.8479 of the distance from (−4.5, 0) to (0, −2).
-        assert!(danger.block_shot.0.distance(Point::new(-0.684_411, -1.695_817)) < 1e-4, "{danger:?}");
-        assert!((danger.block_shot.1 - 0.847_908_7).abs() < 1e-5);
+        assert!(shot.distance(Point::new(-0.684_411, -1.695_817)) < 1e-4, "{danger:?}");
+        assert!((block_shot(&view, danger.at, &settings).1 - 0.847_908_7).abs() < 1e-5);
     }
 
     #[test]
@@ -254,8 +250,7 @@ mod tests {
 
     fn made(n: u8, near: bool, open: f32, time_to_shoot: f32) -> Danger {
         let at = Point::new(0.0, f32::from(n));
-        let opponent = RobotId::new(n).unwrap();
-        Danger { opponent, at, near, open, time_to_shoot, block_shot: (at, 0.8), block_pass: at }
+        Danger { opponent: RobotId::new(n).unwrap(), at, near, open, time_to_shoot }
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! `legal`: moves a place to where `rules::keep_out` allows a robot's body in this phase. Attack frame, m.
 
-use geometry::{Attack, Field, GoalEnd, Point, Vector};
+use std::sync::LazyLock;
+
+use geometry::{Angle, Attack, Field, GoalEnd, Point, Vector};
 use rules::keep_out::{KeepOut, Situation, keep_out};
 use rules::limits::{OPPONENT_AREA_DISTANCE, ROBOT_RADIUS};
 use rules::{Phase, RuleRole, Side};
@@ -24,7 +26,14 @@ const PLACES_APART_MIN_M: f32 = 0.2;
 /// Spacing of the rings, m.
 const RING_SPACING_M: f32 = 0.1;
 const RINGS: u32 = 15;
-const SPOKES: u32 = 24;
+const SPOKES: usize = 24;
+
+/// The directions of places on a ring, evenly spaced.
+static DIRECTIONS: LazyLock<[Vector<Attack>; SPOKES]> = LazyLock::new(|| {
+    std::array::from_fn(|spoke| {
+        Vector::polar(1.0, Angle::new(geometry::math::TAU * spoke as f32 / SPOKES as f32))
+    })
+});
 
 /// The nearest place to `at` where a field player may stand: within the lines, out of our area (at its edge),
 /// and off everything else that the phase forbids.
@@ -56,21 +65,17 @@ pub fn legal_for(
     let rules = forbidden_to(view, rule_role);
     let free = |place: &Point<Attack>| {
         let body = Point::new(place.x(), place.y());
-        rules.offence(body, ROBOT_RADIUS + margin).is_none()
+        taken.iter().all(|other| other.distance(*place) >= PLACES_APART_MIN_M)
+            && rules.offence(body, ROBOT_RADIUS + margin).is_none()
             && !in_the_way(view, rule_role, *place)
-            && taken.iter().all(|other| other.distance(*place) >= PLACES_APART_MIN_M)
     };
     if free(&place) {
         return place;
     }
     // Rare: where areas, lines and the ball leave little room. Tries rings around it, the nearest free place
     // first.
-    let around = (1..=RINGS).flat_map(|ring| {
-        (0..SPOKES).map(move |spoke| {
-            let turn = geometry::Angle::new(geometry::math::TAU * spoke as f32 / SPOKES as f32);
-            Vector::polar(RING_SPACING_M * ring as f32, turn)
-        })
-    });
+    let around = (1..=RINGS)
+        .flat_map(|ring| DIRECTIONS.iter().map(move |direction| *direction * (RING_SPACING_M * ring as f32)));
     around.map(|by| out(place + by)).find(free).unwrap_or(place)
 }
 
