@@ -138,10 +138,11 @@ const CHIP_PULSE: &[(f32, u64)] = SPEC.chip_pulses;
 pub const FULL_VOLTS: f32 = SPEC.full_volts;
 /// Voltage below which the capacitor is safe to touch, V.
 const EMPTY_VOLTS: f32 = SPEC.empty_volts;
-/// Time over which a charge is watched: less than a suspicion has to last, so that two in a row make a failure.
+/// Time over which a charge is watched: less than a suspicion has to last, so that two in a row make a
+/// failure.
 const WATCHED_FOR: Duration = Duration::millis(300);
-/// Least rise in that time while it is charged, V: 10 V/s, a tenth of what a charger gives that fills it in 2 s
-/// (estimate; teams publish 1 to 3 s).
+/// Least rise in that time while it is charged, V: 10 V/s, a tenth of what a charger gives that fills it in
+/// 2 s (estimate; teams publish 1 to 3 s).
 const RISE_MIN: f32 = 0.015 * FULL_VOLTS;
 /// Greatest fall in that time without a kick, V (estimate: a capacitor leaks less in a minute).
 const FALL_MAX: f32 = 0.1 * FULL_VOLTS;

@@ -135,8 +135,8 @@ fn ms(now: Instant) -> u32 {
     (now.0 / 1_000) as u32
 }
 
-/// A radio is doubted for this time after a fault, ms: less than a suspicion has to last, so that one fault is
-/// no failure, and a chip that is set up again at every check of 25 ms is.
+/// A radio is doubted for this time after a fault, ms: less than a suspicion has to last, so that one fault
+/// is no failure, and a chip that is set up again at every check of 25 ms is.
 const RADIO_DOUBTED_MS: u32 = 300;
 
 impl Default for Mailboxes {

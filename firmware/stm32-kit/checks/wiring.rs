@@ -99,5 +99,5 @@ pub(crate) fn flashed_as_measured(here: &str, workspace: &str, package: &str) {
         assert_eq!(settings(here, &format!("[profile.release{part}]")), measured, "{part}");
     }
     let own = settings(here, &format!("[profile.release.package.{package}]"));
-    assert_eq!(own, Some(BTreeSet::from(["opt-level = \"s\"".to_owned()])));
+    assert_eq!(own, Some(BTreeSet::from(["opt-level = \"z\"".to_owned()])));
 }

@@ -252,9 +252,8 @@ fn of_20_faults_planted_in_a_match_15_are_named_within_2_s_and_none_wrongly() {
     assert!(in_time >= 15 && wrong == 0 && whole == 0, "{in_time}, {late}, {wrong}, {whole} of whole robots");
 }
 
-/// The long one: matches of seeds that no threshold was set by.
+/// Matches of seeds that no threshold was set by.
 #[test]
-#[ignore = "minutes: cargo test --release -p match-tests --test parts in_matches -- --ignored --nocapture"]
 fn in_120_robot_minutes_of_matches_whole_robots_name_no_part() {
     let (mut ticks, mut named) = (0, Vec::new());
     for seed in LONG_SEEDS {
@@ -271,7 +270,6 @@ fn in_120_robot_minutes_of_matches_whole_robots_name_no_part() {
 
 /// The same of faults: 20 in each of five matches.
 #[test]
-#[ignore = "minutes: as above"]
 fn in_matches_of_100_faults_most_are_named_within_2_s() {
     let mut sums = ([0; 3], 0);
     for seed in FAULT_SEEDS {

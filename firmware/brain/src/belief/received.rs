@@ -143,7 +143,7 @@ impl Belief {
                 self.pose.position.distance(at) > BEAM_ENDS
             } else {
                 let seen = self.pose.to_body(at);
-                !self.ball_flies() && seen.x() < BALL_AT && seen.x() > FRONT && seen.y().abs() < WITHIN
+                !self.ball_flies() && seen.x() < BALL_AT && seen.x() > FRONT && seen.y().abs() < BEAM_HALF_WIDTH
             }
         });
         let handling = &mut self.handling;
@@ -208,7 +208,7 @@ const CONTRADICTED_FOR: Duration = Duration::millis(500);
 /// No ball whose centre is this far from the robot's interrupts the beam, m: three balls before the opening.
 const BEAM_ENDS: f32 = BALL_AT + 0.2;
 /// A ball this far beside the middle interrupts the beam certainly, m: half of a mouth of 35 mm to each side.
-const WITHIN: f32 = 0.015;
+const BEAM_HALF_WIDTH: f32 = 0.015;
 /// A gap between ball and dribbler opening that counts as visible by the rules, m.
 const VISIBLE_GAP: f32 = 0.05;
 /// How far before the roller the host may show a ball that is held, m: noise, and 30 ms of its delay.
