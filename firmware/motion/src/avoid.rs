@@ -181,7 +181,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>, carried: &mut Carried<F>) -> Detour
         return Detour { verdict, goal: next.position, length: 0.0, restraint, next, motion };
     }
     let mut scene = Scene::new(course.obstacles, within, course.effort);
-    scene.look();
+    scene.look(from, velocity);
     if scene.is_inside(from) {
         return escape(course, &mut scene, carried);
     }
