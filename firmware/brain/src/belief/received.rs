@@ -143,7 +143,10 @@ impl Belief {
                 self.pose.position.distance(at) > BEAM_ENDS
             } else {
                 let seen = self.pose.to_body(at);
-                !self.ball_flies() && seen.x() < BALL_AT && seen.x() > FRONT && seen.y().abs() < BEAM_HALF_WIDTH
+                !self.ball_flies()
+                    && seen.x() < BALL_AT
+                    && seen.x() > FRONT
+                    && seen.y().abs() < BEAM_HALF_WIDTH
             }
         });
         let handling = &mut self.handling;

@@ -53,7 +53,7 @@ impl<'o, F: Copy> Scene<'o, F> {
             };
             self.moves |= item.moves;
             item.enclose(&obstacle.shape);
-            if item.moves && obstacle.is_body {
+            if item.moves && obstacle.leads {
                 item.let_lead(velocity, from, own);
             }
             // The capacity suffices: the obstacles were counted above.
@@ -268,8 +268,8 @@ impl<F: Copy> Item<F> {
         self.brake = square(radius + corner * math::min(margin, BRAKE_SKIN));
     }
 
-    /// Takes a body that gets away just ahead of the robot, with `velocity`, for one to follow, not to drive
-    /// around: robots that move in a row start together. Braking still keeps off it.
+    /// Takes a teammate that gets away just ahead of the robot, with `velocity`, for one to follow, not to
+    /// drive around: robots that move in a row start together. Braking still keeps off it.
     fn let_lead(&mut self, velocity: Vector<F>, from: Point<F>, own: Vector<F>) {
         let off = self.center - from;
         let square_distance = off.dot(off);

@@ -433,7 +433,8 @@ fn robots_that_move_in_a_row_keep_their_places_in_it() {
     let mut widest = 0.0_f32;
     for _ in 0..150 {
         let speed: Vector<Field> = fast;
-        let ahead = [Obstacle::robot(leader, speed, 0.21 + 0.1 * speed.norm())];
+        let robot = Obstacle::robot(leader, speed, 0.21 + 0.1 * speed.norm());
+        let ahead = [Obstacle { leads: true, ..robot }];
         let path = super::plan(&Course { obstacles: &ahead, ..follower }, &mut carried);
         let next = limits.plan(leader, fast, at(0.0, 0.8)).at(STEP);
         (leader, fast) = (next.position, next.velocity);
