@@ -102,8 +102,7 @@ impl Surroundings {
                     || path.distance_to(at) < reach
                     || stops.distance_to(at) < reach;
                 if is_close == is_first {
-                    let robot = Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed);
-                    self.add(Obstacle { leads: other.side == Side::Ours, ..robot });
+                    self.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
                 }
             }
         }
