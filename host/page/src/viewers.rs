@@ -192,7 +192,9 @@ mod tests {
         let viewers = Viewers::default();
         let before = viewers.join();
         let moments: Vec<Arc<str>> = ["1", "2"].map(Arc::from).to_vec();
-        moments.iter().for_each(|moment| viewers.follow(moment));
+        for moment in &moments {
+            viewers.follow(moment);
+        }
         for mailbox in [before, viewers.join()] {
             assert_eq!(mailbox.next(), Some(Sent::Transport(moments[1].clone())));
         }
