@@ -95,7 +95,7 @@ impl ChargeWatch {
     }
 
     /// Takes what the kicker is told and the voltage; returns whether it is doubted: it hardly rose while it
-    /// was charged for [`WATCHED_FOR`], or fell by more than leaks without a kick, or cannot be read.
+    /// was charged for 0.3 s, or fell by more than leaks without a kick, or cannot be read.
     pub fn step(&mut self, now: Instant, act: KickerAct, volts: f32) -> bool {
         if matches!(act, KickerAct::Flat(_) | KickerAct::Chip(_) | KickerAct::Bleed) {
             self.from = None;
