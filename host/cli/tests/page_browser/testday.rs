@@ -1,7 +1,13 @@
 //! `testday`: browser tests of what a test day needs: a robot's kicker is tested, fitted and its gain taken;
-//! a moment of the simulated field is kept, returned to, saved and loaded.
+//! a moment of the simulated field is kept, returned to, saved and loaded; a recording is sent as the page
+//! plays it.
+
+use std::net::UdpSocket;
+use std::time::{Duration, Instant};
 
 use page_browser::{Browser, Tab};
+use ssl::Message as _;
+use ssl::vision::WrapperPacket;
 
 use crate::program::Program;
 use crate::{no_errors, number};
@@ -180,4 +186,109 @@ fn a_moment_is_played_on_from_a_recording_and_from_a_match() {
         assert_eq!(rows.as_f64(), Some(3.0));
         no_errors(&mut tab);
     }
+}
+
+/// Packets that a port of this machine receives: when the camera saw each, s.
+struct Camera(UdpSocket);
+
+impl Camera {
+    /// Time of the camera in the next frame; none where nothing comes for half a second.
+    fn next(&self) -> Option<f64> {
+        let mut bytes = [0; 65_536];
+        loop {
+            let length = self.0.recv(&mut bytes).ok()?;
+            let packet = WrapperPacket::decode(&bytes[..length]).expect("a packet of the vision");
+            if let Some(detection) = packet.detection {
+                return Some(detection.t_capture);
+            }
+        }
+    }
+
+    /// Drops what has come, until nothing comes any more.
+    fn drain(&self) {
+        assert!((0..5_000).any(|_| self.next().is_none()), "packets keep coming");
+    }
+
+    /// Drops what has come.
+    fn drain_queue(&self) {
+        self.0.set_nonblocking(true).expect("a socket");
+        self.drain();
+        self.0.set_nonblocking(false).expect("a socket");
+    }
+
+    /// Packets within a second, and the recording's time that they span, s.
+    fn of_a_second(&self) -> (usize, f64) {
+        let (until, first) = (Instant::now() + Duration::from_secs(1), self.next().expect("it is sent"));
+        let (mut count, mut last) = (1, first);
+        while Instant::now() < until {
+            (count, last) = (count + 1, self.next().expect("it is sent"));
+        }
+        (count, last - first)
+    }
+}
+
+/// Time of the camera in the first frame from a moment of the log on, s.
+fn captured(log: &str, from_s: f64) -> f64 {
+    let mut began_ns = None;
+    let later = ssl::log::open(std::path::Path::new(log)).unwrap().filter(|record| {
+        let began_ns = *began_ns.get_or_insert(record.timestamp_ns);
+        (record.timestamp_ns - began_ns) as f64 * 1e-9 >= from_s
+    });
+    let mut frames = later.filter_map(|record| WrapperPacket::decode(&record.payload[..]).ok()?.detection);
+    frames.next().unwrap().t_capture
+}
+
+#[test]
+fn a_recording_is_sent_as_the_page_plays_pauses_and_seeks_it() {
+    let log = concat!(env!("CARGO_MANIFEST_DIR"), "/../../protocol/ssl/tests/data/grsim_divB_22s.log.gz");
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    socket.set_read_timeout(Some(Duration::from_millis(500))).unwrap();
+    let to = socket.local_addr().unwrap().to_string();
+    let camera = Camera(socket);
+    // Slow and mostly paused: the recording of 22 s is not over before a browser is there.
+    let send =
+        ["--watch", "--send", "127.0.0.1", "--vision", &to, "--listen", "127.0.0.1:0", "--speed", "0.5"];
+    let program = Program::start(&[&["replay", log], &send[..]].concat());
+    let mut browser = Browser::start().unwrap();
+    let mut tab = open(&mut browser, &program, "control");
+    tab.wait("/goes out to the network/.test(document.getElementById('tab-control').textContent)").unwrap();
+    tab.wait("document.getElementById('connection').textContent === 'sending'").unwrap();
+    // Paused, nothing comes; the page stands where the program does.
+    tab.wait("onetwo.time.playing && onetwo.time.at > 1").unwrap();
+    tab.click("#play").unwrap();
+    tab.wait("!onetwo.time.playing").unwrap();
+    camera.drain();
+    assert_eq!(camera.next(), None, "paused");
+    // Another moment while paused: the packets there come next.
+    tab.eval("location.hash = '#t=15.00'").unwrap();
+    tab.wait("Math.abs(onetwo.store.scene.t - 15) < 0.1").unwrap();
+    assert_eq!(camera.next(), None, "moved, and still paused");
+    tab.click("#play").unwrap();
+    let at = camera.next().expect("it is sent again");
+    assert!((at - captured(log, 15.0)).abs() < 0.1, "{at} s");
+    tab.click("#play").unwrap();
+    tab.wait("!onetwo.time.playing").unwrap();
+    // A second viewer sees the same moment, and sets another speed for all.
+    let mut other = browser.open(&program.url("?theme=light"), 900, 700).unwrap();
+    other.wait("onetwo.time.at > 14 && !onetwo.time.playing").unwrap();
+    other.eval("(() => { const pace = document.getElementById('pace'); pace.value = '0.25'; pace.dispatchEvent(new Event('change')); })()").unwrap();
+    other.wait("onetwo.time.pace === 0.25").unwrap();
+    other.click("#play").unwrap();
+    other.wait("onetwo.time.playing").unwrap();
+    no_errors(&mut other);
+    drop(other);
+    let mut tab = browser.open(&program.url("?theme=light"), 900, 700).unwrap();
+    tab.wait("onetwo.time.pace === 0.25 && document.getElementById('pace').value === '0.25'").unwrap();
+    camera.drain_queue();
+    let (packets, span_s) = camera.of_a_second();
+    assert!((0.15..0.4).contains(&span_s) && packets > 5, "{packets} packets of {span_s} s in a second");
+    // Back, to before what was sent.
+    let [wanted, before] = [2.0, 10.0].map(|from_s| captured(log, from_s));
+    tab.eval("location.hash = '#t=2.00'").unwrap();
+    // An address names a moment that stands.
+    tab.wait("!onetwo.time.playing").unwrap();
+    tab.click("#play").unwrap();
+    let back = std::iter::from_fn(|| camera.next()).find(|at| *at < before);
+    assert!(back.is_some_and(|at| (at - wanted).abs() < 0.1), "{back:?} s, not {wanted}");
+    no_errors(&mut tab);
 }
