@@ -35,13 +35,17 @@ pub struct BoardFirmware {
     pub page: u32,
 }
 
+/// The option for cargo that compiles a package of the firmware as small as it can be.
+pub(crate) fn smallest(package: &str) -> [String; 2] {
+    ["--config".to_owned(), format!("profile.firmware.package.{package}.opt-level=\"z\"")]
+}
+
 impl Board {
     /// The option for cargo with which the package of a real board is compiled: its tasks run once a packet
     /// or less, so it is made as small as it can be, 2 kB less than with "s". What it is flashed with from
     /// its own directory says the same (`.cargo/config.toml`).
     pub fn profile(&self) -> Option<[String; 2]> {
-        let small = format!("profile.firmware.package.{}.opt-level=\"z\"", self.package);
-        self.firmware.as_ref().map(|_| ["--config".to_owned(), small])
+        self.firmware.as_ref().map(|_| smallest(&self.package))
     }
 
     /// The board of the directory `name`, from the text of its `Cargo.toml`; the error names the key.
