@@ -39,7 +39,7 @@ pub struct Wires {
     lost: Signal<CriticalSectionRawMutex, Lost>,
     /// Newest request to the kicker.
     request: Signal<CriticalSectionRawMutex, OmniKick>,
-    /// The capacitor's voltage does not follow what the kicker is told.
+    /// The capacitor's voltage does not follow the orders to the kicker.
     charge_doubted: AtomicBool,
 }
 

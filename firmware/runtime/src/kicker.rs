@@ -80,7 +80,7 @@ impl Default for Interlock {
     }
 }
 
-/// Whether the capacitor's voltage follows what the kicker is told.
+/// Whether the capacitor's voltage follows the orders to the kicker.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct ChargeWatch {
     /// When the voltage was noted, that voltage, and whether it was charged all the time since.
@@ -94,8 +94,8 @@ impl ChargeWatch {
         Self { from: None, doubted: false }
     }
 
-    /// Takes what the kicker is told and the voltage; returns whether it is doubted: it hardly rose while it
-    /// was charged for 0.3 s, or fell by more than leaks without a kick, or cannot be read.
+    /// Takes the order to the kicker and the voltage; returns whether the voltage is doubted: it hardly rose
+    /// in 0.3 s of charging, fell by more than leaks away without a kick, or cannot be read.
     pub fn step(&mut self, now: Instant, act: KickerAct, volts: f32) -> bool {
         if matches!(act, KickerAct::Flat(_) | KickerAct::Chip(_) | KickerAct::Bleed) {
             self.from = None;

@@ -7,7 +7,7 @@
 //! | motor or driver | the body's acceleration against the efforts (duty cycles less what the speeds need): they fit without one of them |
 //! | encoder | the board reports NaN: driven hard without moving |
 //! | break-beam sensor | the host's ball contradicts it (`brain::belief`) |
-//! | capacitor, charger | the voltage does not follow what the kicker is told (`kicker`) |
+//! | capacitor, charger | the voltage does not follow the orders to the kicker (`kicker`) |
 //! | radio | its chip was set up again, or its line erred (`mailboxes`) |
 //!
 //! A part is suspected while leaving it out explains what all together do not, and failed once that has

@@ -180,8 +180,8 @@ impl fmt::Display for TeamFault {
             }
             Self::FailedParts { robot, parts } => write!(
                 f,
-                "robot {robot} reports: {parts}; it goes on without one wheel or the gyroscope, slowly, and stops without more: \
-                 take it off the field, and look at plugs, cable and driver of that part (docs/boards.md)"
+                "robot {robot} reports: {parts}; it goes on without it where it can, slowly with three wheels, and stops with less: \
+                 take it off the field, and look at that part, its plugs, cable and driver (docs/boards.md)"
             ),
             Self::OtherNumber { shell, radio } => write!(
                 f,

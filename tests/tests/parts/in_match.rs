@@ -57,7 +57,7 @@ impl Hardware {
         self.chassis.report().in_state(PartState::Failed).next()
     }
 
-    /// Whether it is told to drive, as which part of its wheels fails cannot be seen while it stands.
+    /// Whether it is ordered to drive: which part of its wheels fails cannot be seen while it stands.
     fn is_driven(&self) -> bool {
         matches!(self.order, ActuatorFrame::Omni { wheels, .. } if wheels.iter().any(|rim| rim.abs() > 0.3))
     }

@@ -205,12 +205,14 @@ const BRIDGED: Duration = Duration::millis(60);
 const AT_BALL: f32 = 0.2;
 /// A faster ball is not stuck between two robots, m/s.
 const STUCK_SPEED_MAX: f32 = 0.5;
-/// Ball and break-beam sensor contradict each other for this time before it is doubted: a robot of 3 m/s
-/// passes the host's delay of 0.1 s five times in it (estimate; judged in matches).
+/// Ball and break-beam sensor contradict each other for this time before the sensor is doubted: five times
+/// the host's delay of 0.1 s (estimate; judged in matches).
 const CONTRADICTED_FOR: Duration = Duration::millis(500);
-/// No ball whose centre is this far from the robot's interrupts the beam, m: three balls before the opening.
+/// No ball whose centre is this far from the robot's interrupts the beam, m: almost five diameters of a ball
+/// before the dribbler opening.
 const BEAM_ENDS: f32 = BALL_AT + 0.2;
-/// A ball this far beside the middle interrupts the beam certainly, m: half of a mouth of 35 mm to each side.
+/// A ball this far beside the middle interrupts the beam certainly, m: a dribbler opening of 35 mm reaches
+/// 17 mm to each side, less vision's noise.
 const BEAM_HALF_WIDTH: f32 = 0.015;
 /// A gap between ball and dribbler opening that counts as visible by the rules, m.
 const VISIBLE_GAP: f32 = 0.05;
