@@ -8,8 +8,8 @@ use protocol::Who;
 use serde::{Deserialize, Serialize};
 
 use crate::computers::{self, Computers};
-use crate::eyes::Eyes;
-use crate::settings::{Settings, Sight, View};
+use crate::sensed::SensedWorld;
+use crate::settings::{Observation, Settings, View};
 use crate::state::State;
 
 /// What the caller did to an episode.
@@ -39,8 +39,8 @@ pub struct Episode {
     /// Its state, but for computers'.
     pub state: State,
     computers: Option<Computers>,
-    eyes: Option<Eyes>,
-    /// Where there are computers or eyes, what happened since the start.
+    sensed: Option<SensedWorld>,
+    /// Where computers play or cameras watch, what happened since the start.
     events: Vec<Event>,
 }
 
@@ -57,13 +57,14 @@ impl Episode {
             None
         };
         state.trace.small_size_tick(0, &state.world);
-        let eyes = (state.settings.observation == Sight::Sensed).then(|| state.eyes()).transpose()?;
-        Ok(Self { state, computers, eyes, events: Vec::new() })
+        let sensed =
+            (state.settings.observation == Observation::Sensed).then(|| state.sensed()).transpose()?;
+        Ok(Self { state, computers, sensed, events: Vec::new() })
     }
 
     /// Writes the observation, [`Settings::observation_len`] numbers within ±1.
     pub fn observe(&self, view: View, into: &mut [f32]) {
-        self.state.observe(view, self.eyes.as_ref().map(|eyes| &eyes.believed), into);
+        self.state.observe(view, self.sensed.as_ref().map(|sensed| &sensed.estimated), into);
     }
 
     /// Plays one control period with these orders, [`ACTION_LEN`] numbers for each robot; an empty slice
@@ -80,22 +81,22 @@ impl Episode {
         let Some(computers) = &self.computers else {
             for _ in 0..state.settings.period_ms {
                 state.world.step();
-                if let Some(eyes) = &mut self.eyes {
-                    eyes.look(&state.world);
+                if let Some(sensed) = &mut self.sensed {
+                    sensed.look(&state.world);
                 }
                 state.end = state.judge();
                 if state.end.is_some() {
                     break;
                 }
             }
-            state.finish_step(before, was_in_play, [0; 2], &mut self.eyes);
+            state.finish_step(before, was_in_play, [0; 2], &mut self.sensed);
             return Ok(());
         };
         let score = state.score;
         for _ in 0..state.settings.period_ms / state.settings.tick_ms() {
             let judgement = computers.tick(&mut state.world)?;
-            if let Some(eyes) = &mut self.eyes {
-                eyes.look(&state.world);
+            if let Some(sensed) = &mut self.sensed {
+                sensed.look(&state.world);
             }
             if state.settings.task.spec().referee {
                 state.take(judgement);
@@ -105,7 +106,7 @@ impl Episode {
                 break;
             }
         }
-        state.finish_step(before, was_in_play, score, &mut self.eyes);
+        state.finish_step(before, was_in_play, score, &mut self.sensed);
         Ok(())
     }
 
@@ -130,7 +131,7 @@ impl Episode {
 
     /// Whether a saved state is the seed and what happened since.
     fn is_played_again(&self) -> bool {
-        self.computers.is_some() || self.eyes.is_some()
+        self.computers.is_some() || self.sensed.is_some()
     }
 
     /// Another that goes on as this one would.
@@ -138,8 +139,8 @@ impl Episode {
         if self.computers.is_some() {
             return Self::restored(self.saved());
         }
-        let (state, eyes) = (self.state.clone(), self.eyes.clone());
-        Ok(Self { state, computers: None, eyes, events: self.events.clone() })
+        let (state, sensed) = (self.state.clone(), self.sensed.clone());
+        Ok(Self { state, computers: None, sensed, events: self.events.clone() })
     }
 
     /// The episode as it is saved.
@@ -157,12 +158,12 @@ impl Episode {
         match saved {
             Saved::Whole(state) => {
                 state.settings.check()?;
-                let is_played_again =
-                    computers::are_needed(&state.settings) || state.settings.observation == Sight::Sensed;
+                let is_played_again = computers::are_needed(&state.settings)
+                    || state.settings.observation == Observation::Sensed;
                 if !state.is_consistent() || is_played_again {
                     return Err("its robots do not fit its settings".to_owned());
                 }
-                Ok(Self { state: *state, computers: None, eyes: None, events: Vec::new() })
+                Ok(Self { state: *state, computers: None, sensed: None, events: Vec::new() })
             }
             Saved::Played(settings, seed, events, trace) => {
                 let mut episode = Self::start(settings, seed)?;

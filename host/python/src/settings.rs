@@ -30,7 +30,7 @@ pub struct Settings {
     /// The world of each seed.
     pub world: WorldPlan,
     /// What is observed.
-    pub observation: Sight,
+    pub observation: Observation,
     /// Control period, ms: orders stay as they are in between.
     pub period_ms: u32,
     /// Simulated time after which the episode ends, s.
@@ -112,7 +112,7 @@ impl Settings {
             format!("opponents_by {:?}: take scripted, two-defenders or none", opponents_by.label())
         } else if self.world != WorldPlan::default() {
             "world: take nominal".to_owned()
-        } else if self.observation != Sight::Truth {
+        } else if self.observation != Observation::Truth {
             format!("observation {:?}: take truth", self.observation.label())
         } else {
             return Ok(());
@@ -168,7 +168,7 @@ geometry::labels! {
 geometry::labels! {
     /// What is observed.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-    pub enum Sight {
+    pub enum Observation {
         /// The true state.
         Truth = "truth",
         /// What a host estimates from cameras, and robots' own reports of ball contact.

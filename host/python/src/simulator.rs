@@ -16,7 +16,7 @@ use crate::episode::Episode;
 use crate::picture::{self, Pixels};
 use crate::refused;
 use crate::saved::{restored, saved};
-use crate::settings::{ACTION_LEN, End, Settings, Sight, View};
+use crate::settings::{ACTION_LEN, End, Observation, Settings, View};
 use crate::task::Task;
 
 /// Episodes of the Small Size simulator.
@@ -67,8 +67,8 @@ impl Simulator {
             observation: known(
                 "observation",
                 &observation,
-                Sight::from_label,
-                &Sight::ALL.map(Sight::label),
+                Observation::from_label,
+                &Observation::ALL.map(Observation::label),
             )?,
             own,
             opponents: opponents.unwrap_or(spec.opponents),

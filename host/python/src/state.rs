@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::computers::Judgement;
 use crate::driver::{Driver, Script};
-use crate::eyes::Eyes;
 use crate::legged;
+use crate::sensed::SensedWorld;
 use crate::settings::{ACTION_LEN, End, Settings, View};
 use crate::start::line_up;
 
@@ -89,8 +89,8 @@ impl State {
     }
 
     /// The cameras over its world, with a host's tracker.
-    pub fn eyes(&self) -> Result<Eyes, String> {
-        Ok(Eyes::new(&self.world, model(&self.settings, self.seed)?.vision, self.seed))
+    pub fn sensed(&self) -> Result<SensedWorld, String> {
+        Ok(SensedWorld::new(&self.world, model(&self.settings, self.seed)?.vision, self.seed))
     }
 
     /// Simulated time since the start, s.
@@ -136,9 +136,15 @@ impl State {
     }
 
     /// After a period's physics: estimate, hash, reward, time limit.
-    pub fn finish_step(&mut self, before: f32, was_in_play: bool, score: [u32; 2], eyes: &mut Option<Eyes>) {
-        if let Some(eyes) = eyes {
-            eyes.estimate(&self.world);
+    pub fn finish_step(
+        &mut self,
+        before: f32,
+        was_in_play: bool,
+        score: [u32; 2],
+        sensed: &mut Option<SensedWorld>,
+    ) {
+        if let Some(sensed) = sensed {
+            sensed.estimate(&self.world);
         }
         self.world.take_events(&mut Vec::new());
         self.steps += 1;
@@ -163,10 +169,10 @@ impl State {
         }
     }
 
-    /// Writes the observation of the true state or of what is believed, [`Settings::observation_len`] numbers
+    /// Writes the observation of the true or of the estimated state, [`Settings::observation_len`] numbers
     /// within ±1.
-    pub fn observe(&self, view: View, believed: Option<&World>, into: &mut [f32]) {
-        let world = believed.unwrap_or(&self.world);
+    pub fn observe(&self, view: View, estimated: Option<&World>, into: &mut [f32]) {
+        let world = estimated.unwrap_or(&self.world);
         let [x, y] = world.pitch().corner();
         let (ball, Scales { speed, turn_speed, shot }) = (&world.ball, self.scales);
         let turned = view.side.pick(-1.0, 1.0);
@@ -193,7 +199,7 @@ impl State {
                 let id = RobotId::new(n as u8).unwrap_or(RobotId::ZERO);
                 let Some(robot) = world.robot(Who { colour, id }) else { continue };
                 // Opponents do not report what they sense.
-                let contact = robot.ball_contact && (believed.is_none() || colour == view.side);
+                let contact = robot.ball_contact && (estimated.is_none() || colour == view.side);
                 let (sin, cos) = robot.pose.heading.sin_cos();
                 for value in [
                     turned * robot.pose.position.x() / x,

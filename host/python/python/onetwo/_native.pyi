@@ -122,8 +122,8 @@ class Simulator:
         """A simulator, with its first episode started. Raises ValueError for a value outside of these.
 
         task: "score", "shoot-at-keeper", "pass-and-receive", "contested-ball", "keep-away", "3v3", "6v6", or a trial of
-        the first paper, "scenario-1" to "scenario-4" or "scenario-random"; what is None is the task's. own: robots of the own team, 1 to 11. opponents: 0 to 11. agents: own robots, from 0, that
-        `actions` move. teammates_by, opponents_by: who moves the others: "none", "scripted" (on the true state), "coach"
+        the first paper, "scenario-1" to "scenario-4" or "scenario-random"; what is None is the task's. own: robots of
+        the own team, 1 to 11. opponents: 0 to 11. agents: own robots, from 0, that `actions` move. teammates_by, opponents_by: who moves the others: "none", "scripted" (on the true state), "coach"
         (ours: brains, cases and coach, with cameras and radio), "reactive", "marking" or "zone" (the reference teams).
         world: "nominal", a profile of `onetwo play --world`, "random" (another one for each seed) or "random:SEED".
         observation: "truth", or "sensed": what a host estimates from cameras. league: "division-b", "division-a" or
@@ -166,8 +166,8 @@ class Simulator:
     def save(self) -> bytes:
         """The state of the episode: a simulator that restores it goes on bit for bit, in another process too.
 
-        Where a coach, a reference team or the referee takes part, in trials and with observation="sensed" it holds the seed and all orders since, which `restore`
-        plays again; else the whole state, and `restore` takes microseconds."""
+        Where a coach, a reference team or the referee takes part, in trials and with observation="sensed" it holds the
+        seed and all orders since, which `restore` plays again; else the whole state, and `restore` takes microseconds."""
     def restore(self, state: bytes) -> None:
         """Goes on from a saved state of a simulator with the same settings. Raises ValueError for foreign or damaged bytes,
         and for those of another version."""

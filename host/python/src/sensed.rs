@@ -1,4 +1,4 @@
-//! `eyes`: what a host knows of an episode: places and velocities that its tracker estimates from cameras'
+//! `sensed`: an episode's world as a host estimates it: places and velocities by its tracker from cameras'
 //! late and noisy frames, and robots' own reports of ball contact.
 
 use hil_sim::small_size::camera::Cameras;
@@ -10,18 +10,18 @@ use protocol::Instant;
 
 /// Cameras over an episode's field, and the tracker behind them.
 #[derive(Clone, Debug)]
-pub struct Eyes {
+pub struct SensedWorld {
     cameras: Cameras,
     tracker: Tracker,
     /// The estimated state; what was not seen yet is where it was placed at the start.
-    pub believed: World,
+    pub estimated: World,
 }
 
-impl Eyes {
-    /// Opens them at the start of an episode.
+impl SensedWorld {
+    /// At the start of an episode.
     pub fn new(world: &World, vision: VisionModel, seed: u64) -> Self {
         let cameras = Cameras::of_model(Profile::Ours, 0.0, world, vision, seed);
-        Self { cameras, tracker: Tracker::default(), believed: world.clone() }
+        Self { cameras, tracker: Tracker::default(), estimated: world.clone() }
     }
 
     /// Takes the frames that are due; to be called after every step of the world.
@@ -41,15 +41,15 @@ impl Eyes {
                 climb: ball.climb,
                 ..Ball::rolling(ball.position, ball.velocity)
             };
-            self.believed.put_ball(seen);
+            self.estimated.put_ball(seen);
         }
         for robot in world.robots() {
             let contact = robot.ball_contact;
             if let Some(seen) = tracked.robot(robot.who) {
-                let believed = self.believed.put(robot.who, seen.pose);
-                (believed.velocity, believed.turning) = (seen.velocity, seen.angular);
+                let estimated = self.estimated.put(robot.who, seen.pose);
+                (estimated.velocity, estimated.turning) = (seen.velocity, seen.angular);
             }
-            self.believed.alter(robot.who, |believed| believed.ball_contact = contact);
+            self.estimated.alter(robot.who, |estimated| estimated.ball_contact = contact);
         }
     }
 }
