@@ -33,15 +33,20 @@ struct Slot {
     episode: Episode,
     /// It is started again from this seed, and not stepped.
     restart: Option<u64>,
-    error: Option<String>,
 }
 
-/// The episodes that one thread steps, with their actions and observations.
+/// The episodes that one thread steps, with their actions and what came of them. The caller's thread reads
+/// these lists only, because the episodes are in the cache of another processor.
 #[derive(Default)]
 struct Share {
     slots: Vec<Slot>,
     actions: Vec<f32>,
     observations: Vec<f32>,
+    rewards: Vec<f32>,
+    /// Numbers of the ends in `ENDS`.
+    ends: Vec<u8>,
+    /// The first that could not be stepped.
+    error: Option<String>,
 }
 
 /// A thread that steps the shares that it is sent, and sends them back; it ends with this value.
@@ -94,8 +99,12 @@ impl VectorSimulator {
         }
         py.detach(|| self.step_all()).map_err(failed)?;
         write("observations", observations, &self.observations)?;
-        write("rewards", rewards, &self.slots().map(|slot| slot.episode.state.reward).collect::<Vec<f32>>())?;
-        write("ends", ends, &self.slots().map(Slot::end_number).collect::<Vec<u8>>())
+        write(
+            "rewards",
+            rewards,
+            &self.shares.iter().flat_map(|share| &share.rewards).copied().collect::<Vec<f32>>(),
+        )?;
+        write("ends", ends, &self.shares.iter().flat_map(|share| &share.ends).copied().collect::<Vec<u8>>())
     }
 
     /// The simulated time of each episode, s.
@@ -179,9 +188,11 @@ impl VectorSimulator {
                 shares.push(Share::default());
             }
             let Some(share) = shares.last_mut() else { continue };
-            share.slots.push(Slot { episode, restart: None, error: None });
+            share.slots.push(Slot { episode, restart: None });
             share.actions.resize(action_len * share.slots.len(), 0.0);
             share.observations.resize(observation_len * share.slots.len(), 0.0);
+            share.rewards.push(0.0);
+            share.ends.push(0);
         }
         let workers = shares.iter().skip(1).map(|_| Worker::start()).collect::<Result<_, _>>();
         Ok(Self {
@@ -222,8 +233,7 @@ impl VectorSimulator {
             into.copy_from_slice(&share.observations);
             observations = rest;
         }
-        let mut slots = self.shares.iter_mut().flat_map(|share| &mut share.slots);
-        slots.find_map(|slot| slot.error.take()).map_or(Ok(()), Err)
+        self.shares.iter_mut().find_map(|share| share.error.take()).map_or(Ok(()), Err)
     }
 }
 
@@ -250,9 +260,15 @@ impl Share {
         let (action_len, observation_len) = (self.actions.len() / count, self.observations.len() / count);
         let actions = self.actions.chunks_exact(action_len);
         let observations = self.observations.chunks_exact_mut(observation_len);
-        for ((slot, action), observation) in self.slots.iter_mut().zip(actions).zip(observations) {
-            slot.error = slot.step(action).err();
+        let results = self.rewards.iter_mut().zip(&mut self.ends);
+        for (((slot, action), observation), (reward, end)) in
+            self.slots.iter_mut().zip(actions).zip(observations).zip(results)
+        {
+            if let Err(error) = slot.step(action) {
+                self.error.get_or_insert(error);
+            }
             slot.episode.observe(View { side: Colour::Blue, first: 0 }, observation);
+            (*reward, *end) = (slot.episode.state.reward, slot.end_number());
         }
     }
 }

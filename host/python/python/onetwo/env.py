@@ -36,6 +36,7 @@ TASKS = {
     "onetwo/ScenarioRandom-v0": "scenario-random",
 }
 SCORE = "onetwo/Score-v0"
+END_NAMES = np.array(VectorSimulator.ENDS, object)
 
 Floats = NDArray[np.float32]
 Policy = Callable[[Floats], Floats]
@@ -229,7 +230,7 @@ class TaskVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         truncations = ends == VectorSimulator.ENDS.index("time")
         info: dict[str, Any] = {}
         if self._done.any():
-            names = np.array([VectorSimulator.ENDS[end] for end in ends], object)
+            names = END_NAMES[ends]
             info = {"end": names, "_end": self._done, "time_s": np.array(self.simulators.times_s()), "_time_s": self._done}
         return observations, rewards.astype(np.float64), self._done & ~truncations, truncations, info
 
