@@ -131,7 +131,7 @@ pub(super) struct TriesPlan {
     pub(super) seed: u64,
 }
 
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PlayOnPlan {
     /// The moment, s of a recording.

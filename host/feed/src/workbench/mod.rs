@@ -6,6 +6,7 @@
 
 mod asked;
 mod count;
+mod course;
 mod learned;
 mod play_on;
 mod rehearsal;
@@ -13,7 +14,7 @@ mod save;
 mod shared_library;
 mod skill_tests;
 
-use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock};
 
 use arena::cases::{Chosen, described, explained_by, problem};
 use case_tools::workbench::{FindingNote, Sheet, Workbench, case_name, is_case_name};
@@ -48,9 +49,9 @@ pub(crate) struct CaseWorkbench {
     pub(crate) moments: Option<MomentSource>,
     /// The files, read when they are first asked for, and after every saving.
     bench: RwLock<Option<Arc<Workbench>>>,
-    rehearsal: Mutex<Option<Arc<Rehearsal>>>,
-    tries: Mutex<Option<Arc<SkillTests>>>,
-    play_on: Mutex<Option<Arc<PlayOn>>>,
+    rehearsal: Mutex<Option<Rehearsal>>,
+    tries: Mutex<Option<SkillTests>>,
+    play_on: Mutex<Option<PlayOn>>,
 }
 
 impl CaseWorkbench {
@@ -115,49 +116,50 @@ impl CaseWorkbench {
                 let library = self.library_with(&name, &text)?;
                 let order = RehearsalOrder { name, trials, opponents, seed, settings: self.settings.clone() };
                 let rehearsal = Rehearsal::begin(library, order)?;
-                if let Some(old) = self.rehearsal().replace(rehearsal) {
-                    old.stop();
+                if let Some(old) = locked(&self.rehearsal).replace(rehearsal) {
+                    old.course.stop();
                 }
                 self.rehearsed()?
             }
             Asked::Rehearsal {} => self.rehearsed()?,
             Asked::Stop {} => {
-                if let Some(rehearsal) = &*self.rehearsal() {
-                    rehearsal.stop();
+                if let Some(rehearsal) = &*locked(&self.rehearsal) {
+                    rehearsal.course.stop();
                 }
                 self.rehearsed()?
             }
             Asked::Sample { number } => {
-                let rehearsal = self.rehearsal().clone().ok_or(NO_REHEARSAL)?;
-                rehearsal.sample(number).ok_or("there is no such attempt: rehearse anew")?
+                let rehearsal = locked(&self.rehearsal);
+                let sample = rehearsal.as_ref().ok_or(NO_REHEARSAL)?.sample(number);
+                sample.ok_or("there is no such attempt: rehearse anew")?
             }
             Asked::Tries { plan: Some(_) } if is_real(request.powers) => return Err(REAL_FIELD.to_owned()),
             Asked::Tries { plan: Some(plan) } => {
                 let tests = SkillTests::begin(self.tries_plan(plan)?)?;
-                if let Some(old) = self.tries().replace(tests) {
-                    old.stop();
+                if let Some(old) = locked(&self.tries).replace(tests) {
+                    old.course.stop();
                 }
                 self.tried()
             }
             Asked::Tries { plan: None } => self.tried(),
             Asked::StopTries {} => {
-                if let Some(tests) = &*self.tries() {
-                    tests.stop();
+                if let Some(tests) = &*locked(&self.tries) {
+                    tests.course.stop();
                 }
                 self.tried()
             }
             Asked::PlayOn { plan } => {
                 if let Some(plan) = plan {
                     let source = self.moments.clone().ok_or(NO_MOMENT)?;
-                    if let Some(old) = self.play_on().replace(PlayOn::begin(source, plan)?) {
-                        old.stop();
+                    if let Some(old) = locked(&self.play_on).replace(PlayOn::begin(source, plan)?) {
+                        old.course.stop();
                     }
                 }
                 self.played_on()
             }
             Asked::StopPlayOn {} => {
-                if let Some(played) = &*self.play_on() {
-                    played.stop();
+                if let Some(played) = &*locked(&self.play_on) {
+                    played.course.stop();
                 }
                 self.played_on()
             }
@@ -173,24 +175,12 @@ impl CaseWorkbench {
         serde_json::to_string(&answer).map_err(|error| error.to_string())
     }
 
-    fn rehearsal(&self) -> std::sync::MutexGuard<'_, Option<Arc<Rehearsal>>> {
-        self.rehearsal.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn tries(&self) -> std::sync::MutexGuard<'_, Option<Arc<SkillTests>>> {
-        self.tries.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn play_on(&self) -> std::sync::MutexGuard<'_, Option<Arc<PlayOn>>> {
-        self.play_on.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     fn played_on(&self) -> Value {
         let from = self.moments.as_ref().map(|source| match source {
             MomentSource::Recording(..) => "recording",
             MomentSource::Match(_) => "match",
         });
-        json!({ "from": from, "report": self.play_on().as_ref().map(|played| played.report()) })
+        json!({ "from": from, "report": locked(&self.play_on).as_ref().map(PlayOn::report) })
     }
 
     /// The tries that are asked for, in the league of the cases.
@@ -206,7 +196,7 @@ impl CaseWorkbench {
     }
 
     fn tried(&self) -> Value {
-        let report = self.tries().as_ref().map(|tests| tests.report());
+        let report = locked(&self.tries).as_ref().map(SkillTests::report);
         json!({ "choices": SkillTests::choices(), "report": report })
     }
 
@@ -296,9 +286,12 @@ impl CaseWorkbench {
     }
 
     fn rehearsed(&self) -> Result<Value, String> {
-        let rehearsal = self.rehearsal().clone().ok_or(NO_REHEARSAL)?;
-        Ok(rehearsal.report())
+        Ok(locked(&self.rehearsal).as_ref().ok_or(NO_REHEARSAL)?.report())
     }
+}
+
+fn locked<T>(kept: &Mutex<T>) -> MutexGuard<'_, T> {
+    kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A field with real robots: the host needs the machine.

@@ -1,9 +1,6 @@
-//! `rehearsal`: many attempts of a draft in its league's simulator, one after the other on a thread of their
-//! own, beside the match.
+//! `rehearsal`: many attempts of a draft in its league's simulator.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
+use std::sync::Arc;
 
 use arena::cases::league_of;
 use arena::{Attempt, CaseNames, CaseTrial, Opposition, Retrieved, Score, Tape};
@@ -11,6 +8,8 @@ use case_tools::Library;
 use casebase::RetrievalSettings;
 use page::milli;
 use serde_json::{Value, json};
+
+use super::course::Course;
 
 /// Attempts that are offered to be watched.
 const SAMPLES_MAX: usize = 3;
@@ -29,80 +28,39 @@ pub(super) struct Rehearsal {
     order: RehearsalOrder,
     /// Number of robots of the case.
     ours: usize,
-    stopped: AtomicBool,
-    course: Mutex<Course>,
-}
-
-/// Ends a rehearsal, however its thread ends.
-struct End<'r>(&'r Rehearsal);
-
-impl Drop for End<'_> {
-    fn drop(&mut self) {
-        self.0.course().over = true;
-    }
-}
-
-#[derive(Default)]
-struct Course {
-    attempts: Vec<(Attempt, Tape)>,
-    error: Option<String>,
-    over: bool,
+    pub(super) course: Arc<Course<(Attempt, Tape)>>,
 }
 
 impl Rehearsal {
-    pub(super) fn begin(library: Library, order: RehearsalOrder) -> Result<Arc<Self>, String> {
+    pub(super) fn begin(library: Library, order: RehearsalOrder) -> Result<Self, String> {
         let authored = library.names.iter().position(|name| *name == order.name);
         let authored = authored.ok_or("the library does not hold the case")?;
         let base = library.base();
         let league =
             league_of(base.field(), &library.league).ok_or("no simulator has the field of this library")?;
         let ours = base.case(protocol::CaseId(4 * authored as u16)).map_or(0, |case| case.teammates());
-        let (stopped, course) = (AtomicBool::new(false), Mutex::default());
-        let rehearsal = Arc::new(Self { order, ours, stopped, course });
-        let played = rehearsal.clone();
-        let worker = thread::Builder::new().name("rehearsal".to_owned());
-        let work = move || {
-            let _end = End(&played);
-            let order = &played.order;
-            let case_trial = CaseTrial {
-                league,
-                base: library.base(),
-                names: CaseNames::new(library.names.clone()),
-                settings: order.settings.clone(),
-                trials: order.trials,
-                seed: order.seed,
-            };
-            if let Some(case) = case_trial.case(authored) {
-                for number in 0..order.trials {
-                    if played.stopped.load(Ordering::Relaxed) {
-                        break;
-                    }
-                    let mut tape = Tape::default();
-                    match case_trial.attempt(&case, order.opponents, number, Some(&mut tape)) {
-                        Ok(attempt) => played.course().attempts.push((attempt, tape)),
-                        Err(error) => {
-                            played.course().error = Some(error.to_string());
-                            break;
-                        }
-                    }
+        let RehearsalOrder { trials, opponents, seed, .. } = order;
+        let settings = order.settings.clone();
+        let course = Course::start("rehearsal", move |course| {
+            let names = CaseNames::new(library.names.clone());
+            let case_trial = CaseTrial { league, base: library.base(), names, settings, trials, seed };
+            let Some(case) = case_trial.case(authored) else { return Ok(()) };
+            for number in 0..trials {
+                if course.is_stopped() {
+                    break;
                 }
+                let mut tape = Tape::default();
+                let attempt = case_trial.attempt(&case, opponents, number, Some(&mut tape));
+                course.finished().results.push((attempt.map_err(|error| error.to_string())?, tape));
             }
-        };
-        worker.spawn(work).map_err(|error| format!("no thread for the rehearsal: {error}"))?;
-        Ok(rehearsal)
-    }
-
-    fn course(&self) -> std::sync::MutexGuard<'_, Course> {
-        self.course.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    pub(super) fn stop(&self) {
-        self.stopped.store(true, Ordering::Relaxed);
+            Ok(())
+        });
+        Ok(Self { order, ours, course: course? })
     }
 
     pub(super) fn report(&self) -> Value {
-        let course = self.course();
-        let attempts: Vec<_> = course.attempts.iter().map(|(attempt, _)| attempt.clone()).collect();
+        let course = self.course.finished();
+        let attempts: Vec<_> = course.results.iter().map(|(attempt, _)| attempt.clone()).collect();
         let score = Score::of(self.order.name.clone(), self.order.opponents.label(), &attempts);
         json!({
             "name": self.order.name,
@@ -118,8 +76,8 @@ impl Rehearsal {
 
     /// One attempt, to be watched: m, rad, s; attacked is +x.
     pub(super) fn sample(&self, number: u32) -> Option<Value> {
-        let course = self.course();
-        let (attempt, tape) = course.attempts.get(number as usize)?;
+        let course = self.course.finished();
+        let (attempt, tape) = course.results.get(number as usize)?;
         let begun = tape.samples.first()?.time;
         let moments: Vec<Value> = tape
             .samples

@@ -1,13 +1,12 @@
-//! `skill_tests`: tries of a single skill beside the match, one after the other on a thread of their own, as
-//! `onetwo evaluate skills` plays them.
+//! `skill_tests`: tries of a single skill, as `onetwo evaluate skills` plays them.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread;
+use std::sync::Arc;
 
 use hil_sim::small_size::worlds::WorldChoice;
 use serde_json::{Value, json};
 use study::skills::{Skill, SkillPlan, TryResult, rows};
+
+use super::course::Course;
 
 /// Failed tries that are told.
 const FAILURES_MAX: usize = 10;
@@ -15,24 +14,7 @@ const FAILURES_MAX: usize = 10;
 /// Tries that are being played, or were.
 pub(super) struct SkillTests {
     plan: SkillPlan,
-    stopped: AtomicBool,
-    course: Mutex<Course>,
-}
-
-#[derive(Default)]
-struct Course {
-    results: Vec<TryResult>,
-    error: Option<String>,
-    over: bool,
-}
-
-/// Ends the tries, however their thread ends.
-struct End<'t>(&'t SkillTests);
-
-impl Drop for End<'_> {
-    fn drop(&mut self) {
-        self.0.course().over = true;
-    }
+    pub(super) course: Arc<Course<TryResult>>,
 }
 
 impl SkillTests {
@@ -41,40 +23,23 @@ impl SkillTests {
         json!({ "skills": Skill::ALL.map(Skill::label), "worlds": WorldChoice::names().collect::<Vec<_>>() })
     }
 
-    pub(super) fn begin(plan: SkillPlan) -> Result<Arc<Self>, String> {
-        let (stopped, course) = (AtomicBool::new(false), Mutex::default());
-        let tests = Arc::new(Self { plan, stopped, course });
-        let played = tests.clone();
-        let work = move || {
-            let _end = End(&played);
-            for tried in played.plan.tries() {
-                if played.stopped.load(Ordering::Relaxed) {
+    pub(super) fn begin(plan: SkillPlan) -> Result<Self, String> {
+        let tries = plan.tries();
+        let course = Course::start("skill tests", move |course| {
+            for tried in tries {
+                if course.is_stopped() {
                     break;
                 }
-                match tried.play(&mut Vec::new()) {
-                    Ok(result) => played.course().results.push(result),
-                    Err(error) => {
-                        played.course().error = Some(error.to_string());
-                        break;
-                    }
-                }
+                let result = tried.play(&mut Vec::new()).map_err(|error| error.to_string())?;
+                course.finished().results.push(result);
             }
-        };
-        let worker = thread::Builder::new().name("skill tests".to_owned());
-        worker.spawn(work).map_err(|error| format!("no thread for the tries: {error}"))?;
-        Ok(tests)
-    }
-
-    fn course(&self) -> MutexGuard<'_, Course> {
-        self.course.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    pub(super) fn stop(&self) {
-        self.stopped.store(true, Ordering::Relaxed);
+            Ok(())
+        });
+        Ok(Self { plan, course: course? })
     }
 
     pub(super) fn report(&self) -> Value {
-        let course = self.course();
+        let course = self.course.finished();
         let failed = course.results.iter().filter_map(|result| {
             let what = result.end.as_ref().err()?;
             Some(json!({ "number": result.tried.number, "start": result.start, "what": what, "command": result.tried.command() }))
