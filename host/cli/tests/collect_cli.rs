@@ -1,10 +1,11 @@
 //! `collect_cli`: tests of what recordings give to learning: `trial --record`, `cases evidence`, `cases
 //! draft` and `cases learn --from`.
 
+mod verb;
+
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
 use serde_json::Value;
 use ssl::Message;
@@ -14,33 +15,11 @@ use ssl::vision::{
     DetectionBall, DetectionFrame, DetectionRobot, GeometryData, GeometryFieldSize, WrapperPacket,
 };
 
-fn onetwo(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_onetwo")).args(arguments).output().expect("the program starts")
-}
-
-/// The output of a run that succeeds.
-fn done(arguments: &[&str]) -> String {
-    let out = onetwo(arguments);
-    assert!(out.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&out.stderr));
-    String::from_utf8(out.stdout).expect("words in UTF-8")
-}
-
-/// The error of a run that fails, which is one and no panic.
-fn refused(arguments: &[&str]) -> String {
-    let out = onetwo(arguments);
-    let error = String::from_utf8(out.stderr).expect("words in UTF-8");
-    assert_eq!(out.status.code(), Some(1), "{arguments:?}: {error}");
-    assert!(error.contains("error:") && !error.contains("panicked"), "{error}");
-    error
-}
+use verb::{directory, done, failed};
 
 /// A name in an empty directory of the test's own.
 fn scratch(test: &str) -> impl Fn(&str) -> String {
-    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("collect-cli").join(test);
-    if directory.exists() {
-        fs::remove_dir_all(&directory).expect("an old directory goes");
-    }
-    fs::create_dir_all(&directory).expect("a scratch directory");
+    let directory = directory(test);
     move |name| directory.join(name).display().to_string()
 }
 
@@ -106,7 +85,7 @@ fn a_trace_of_another_league_or_library_is_refused_with_what_to_give_instead() {
         &["cases", "learn", "--from", &trace, "--out", &out],
         &["cases", "draft", "--from", &trace, "--out", &out],
     ] {
-        let error = refused(verb);
+        let error = failed(verb, 1);
         assert!(error.contains("division-b") && error.contains("four-legged"), "{error}");
     }
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../casebase/library/cases/division-b");
@@ -115,7 +94,7 @@ fn a_trace_of_another_league_or_library_is_refused_with_what_to_give_instead() {
     for file in ["league.toml", "front/shot.toml"] {
         fs::copy(from.join(file), Path::new(&library).join(file)).expect("a copy");
     }
-    let error = refused(&["cases", "evidence", &trace, "--library", &library, "--out", &out]);
+    let error = failed(&["cases", "evidence", &trace, "--library", &library, "--out", &out], 1);
     assert!(error.contains("case base") && error.contains("cases evidence --library"), "{error}");
     // Drafts need no names of cases.
     done(&["cases", "draft", "--from", &trace, "--library", &library, "--out", &at("drafts")]);
@@ -293,11 +272,11 @@ fn what_is_no_recording_is_refused_with_the_file_and_the_remedy() {
         for verb in ["evidence", "draft"] {
             let from = if verb == "draft" { &["--from"][..] } else { &[] };
             let own = [&["cases", verb, "--league", "division-b", "--out", &out], from, &[&file]].concat();
-            let error = refused(&own);
+            let error = failed(&own, 1);
             assert!(error.contains(name) && error.contains(word), "{name}: {error}");
         }
     }
-    assert!(refused(&["cases", "draft", "--from", "no-such.log", "--out", "x"]).contains("no-such.log"));
+    assert!(failed(&["cases", "draft", "--from", "no-such.log", "--out", "x"], 1).contains("no-such.log"));
     // A trace that was cut counts as far as it goes.
     fs::write(at("half.trace"), &trace[..trace.len() / 2]).expect("a file");
     done(&["cases", "evidence", &at("half.trace"), "--league", "division-b", "--out", &at("half.jsonl")]);

@@ -1,9 +1,10 @@
 //! `compare_cli`: tests of `onetwo replay A --compare B` on traces of a played match in which one record is
 //! changed.
 
+mod verb;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 use std::sync::OnceLock;
 
 use host::record::header::RecordingHeader;
@@ -12,18 +13,10 @@ use serde_json::Value;
 use ssl::Message;
 use ssl::vision::WrapperPacket;
 
+use verb::{json, onetwo, scratch};
+
 /// A changed record is after this time, µs: play runs by then.
 const CHANGED_AFTER_US: u64 = 5_000_000;
-
-fn scratch(name: &str) -> PathBuf {
-    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compare_cli");
-    fs::create_dir_all(&directory).expect("a directory");
-    directory.join(name)
-}
-
-fn onetwo(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_onetwo")).args(arguments).output().expect("the program starts")
-}
 
 /// Eight seconds of a match, played once for all tests.
 fn match_trace() -> &'static (RecordingHeader, Vec<Record>) {
@@ -56,9 +49,7 @@ fn trace(name: &str, change: impl FnOnce(&mut RecordingHeader, &mut Vec<Record>)
 }
 
 fn compared(a: &str, b: &str, code: i32) -> Value {
-    let out = onetwo(&["replay", a, "--compare", b, "--json"]);
-    assert_eq!(out.status.code(), Some(code), "{}", String::from_utf8_lossy(&out.stderr));
-    serde_json::from_slice(&out.stdout).expect("one JSON value on stdout and nothing else")
+    json(&["replay", a, "--compare", b], code)
 }
 
 fn refused(a: &str, b: &str) -> String {

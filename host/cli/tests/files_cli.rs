@@ -1,9 +1,10 @@
 //! `files_cli`: tests of files as people have them: recordings that were joined, are old, or were made with a
 //! clock that was set; outputs that would destroy something; libraries with other files in them.
 
+mod verb;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
@@ -15,20 +16,7 @@ use ssl::vision::{
     DetectionBall, DetectionFrame, DetectionRobot, GeometryData, GeometryFieldSize, WrapperPacket, legacy,
 };
 
-fn onetwo(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_onetwo")).args(arguments).output().expect("the program starts")
-}
-
-fn scratch(test: &str) -> PathBuf {
-    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("files-cli").join(test);
-    let _ = fs::remove_dir_all(&directory);
-    fs::create_dir_all(&directory).expect("a scratch folder");
-    directory
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("a name in UTF-8")
-}
+use verb::{directory, onetwo, text};
 
 /// What `replay` reports of a file, and its exit code.
 fn replay(file: &Path, more: &[&str]) -> (Value, Option<i32>, String) {
@@ -111,7 +99,7 @@ fn gzipped(bytes: &[u8]) -> Vec<u8> {
 
 #[test]
 fn joined_logs_are_read_to_the_last_and_a_cut_one_among_them_is_told() {
-    let directory = scratch("joined");
+    let directory = directory("joined");
     let halves = [0.0, 301.0, 900.0].map(|later| log(9000, START + later, right));
     let file = directory.join("match.log");
     // Two, three, gzipped members, an index between them, and a first one that is cut within a message.
@@ -147,7 +135,7 @@ fn joined_logs_are_read_to_the_last_and_a_cut_one_among_them_is_told() {
 
 #[test]
 fn a_recorder_s_clock_that_jumps_is_not_time_that_was_played() {
-    let directory = scratch("clock");
+    let directory = directory("clock");
     let file = directory.join("clock.log");
     #[expect(clippy::type_complexity, reason = "one table of a test")]
     let stamps: [(&str, fn(u32, f64) -> i64); 5] = [
@@ -177,7 +165,7 @@ fn a_recorder_s_clock_that_jumps_is_not_time_that_was_played() {
 
 #[test]
 fn vision_of_until_2014_is_tracked_on_its_flat_field() {
-    let directory = scratch("legacy");
+    let directory = directory("legacy");
     let file = directory.join("2013.log");
     let flat = legacy::GeometryFieldSize {
         line_width: 10,
@@ -212,7 +200,7 @@ fn vision_of_until_2014_is_tracked_on_its_flat_field() {
 
 #[test]
 fn what_was_counted_and_is_of_no_use_fails_with_its_reason() {
-    let directory = scratch("unused");
+    let directory = directory("unused");
     let file = directory.join("match.log");
     let whole = log(9000, START, right);
     let strange = |kind: MessageKind, payload: &[u8]| {
@@ -248,7 +236,7 @@ fn what_was_counted_and_is_of_no_use_fails_with_its_reason() {
 
 #[test]
 fn no_output_replaces_an_input_a_key_or_a_file_of_another_kind() {
-    let directory = scratch("outputs");
+    let directory = directory("outputs");
     let at = |name: &str| directory.join(name);
     let put = |name: &str, text: &str| fs::write(at(name), text).expect("a file");
     put("team.key", "000102030405060708090a0b0c0d0e0f\n");
@@ -311,7 +299,7 @@ fn no_output_replaces_an_input_a_key_or_a_file_of_another_kind() {
 fn a_calibrated_description_stays_behind_its_link_with_its_mode() {
     use std::os::unix::fs::PermissionsExt as _;
 
-    let directory = scratch("link");
+    let directory = directory("link");
     let (real, link) = (directory.join("real.toml"), directory.join("mine.toml"));
     let shown = onetwo(&["robot", "show", "ours", "--text"]);
     fs::write(&real, shown.stdout).expect("a file");
@@ -328,7 +316,7 @@ fn a_calibrated_description_stays_behind_its_link_with_its_mode() {
 
 #[test]
 fn a_library_is_read_with_other_files_and_endings_in_it_or_with_no_case_at_all() {
-    let directory = scratch("library");
+    let directory = directory("library");
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../casebase/library/cases/four-legged");
     let library = directory.join("four-legged");
     fs::create_dir_all(library.join("center")).expect("a folder");

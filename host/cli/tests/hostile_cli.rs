@@ -3,6 +3,8 @@
 
 #![cfg(unix)]
 
+mod verb;
+
 use std::fs;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -25,18 +27,10 @@ use ssl::log::{LogWriter, MessageKind};
 use ssl::referee::{Command as Order, Referee};
 use ssl::vision::{DetectionFrame, WrapperPacket};
 
+use verb::{scratch, text};
+
 /// Generous: a loaded machine is no failure.
 const PATIENCE: Duration = Duration::from_mins(2);
-
-fn scratch(name: &str) -> PathBuf {
-    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("hostile-cli");
-    fs::create_dir_all(&directory).unwrap();
-    directory.join(name)
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
 
 fn start(arguments: &[&str]) -> Child {
     Command::new(env!("CARGO_BIN_EXE_onetwo"))

@@ -1,5 +1,7 @@
 //! `replay_cli`: tests of `onetwo replay` on recordings of the league's own programs.
 
+mod verb;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::Write;
@@ -19,35 +21,18 @@ use rules::{Colour, League};
 use serde_json::Value;
 use ssl::log::{MessageKind, open};
 
+use verb::{done, failed, recording, scratch, text};
+
 fn onetwo(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_onetwo"))
-        .arg("replay")
-        .args(arguments)
-        .output()
-        .expect("the program starts")
+    verb::onetwo(&[&["replay"], arguments].concat())
 }
 
 fn json(arguments: &[&str], code: i32) -> Value {
-    let out = onetwo(&[arguments, &["--json"]].concat());
-    assert_eq!(out.status.code(), Some(code), "{}", String::from_utf8_lossy(&out.stderr));
-    serde_json::from_slice(&out.stdout).expect("one JSON value on stdout and nothing else")
+    verb::json(&[&["replay"], arguments].concat(), code)
 }
 
 fn refused(arguments: &[&str]) -> String {
-    let out = onetwo(arguments);
-    assert_eq!(out.status.code(), Some(1), "{arguments:?}");
-    String::from_utf8(out.stderr).expect("words in UTF-8")
-}
-
-fn recording(name: &str) -> String {
-    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../protocol/ssl/tests/data");
-    directory.join(name).display().to_string()
-}
-
-fn scratch(name: &str) -> PathBuf {
-    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("replay-cli");
-    fs::create_dir_all(&directory).expect("a scratch folder");
-    directory.join(name)
+    failed(&[&["replay"], arguments].concat(), 1)
 }
 
 #[test]
@@ -218,11 +203,7 @@ fn a_trace_cut_in_a_record_is_checked_up_to_there() {
 #[test]
 fn a_moment_of_a_match_says_what_each_robot_has_to_do_and_why() {
     let name = scratch("decided").display().to_string();
-    let out = Command::new(env!("CARGO_BIN_EXE_onetwo"))
-        .args(["play", "--headless", "--duration", "12", "--seed", "1", "--record", &name])
-        .output()
-        .expect("the program starts");
-    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    done(&["play", "--headless", "--duration", "12", "--seed", "1", "--record", &name]);
     let file = format!("{name}.trace");
     let moment = json(&[&file, "--at", "11"], 0);
     for team in ["blue", "yellow"] {
@@ -246,13 +227,9 @@ fn a_moment_of_a_match_says_what_each_robot_has_to_do_and_why() {
 fn bridged(seed: u32) -> PathBuf {
     let stem = scratch(&format!("bridged-{seed}"));
     let tactics = "threats,second-level,attack,bridge";
-    let out = Command::new(env!("CARGO_BIN_EXE_onetwo"))
-        .args(["play", "--headless", "--duration", "60", "--seed", &seed.to_string(), "--record"])
-        .arg(&stem)
-        .args(["--blue-tactics", tactics, "--yellow-tactics", tactics])
-        .output()
-        .expect("the program starts");
-    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let play = ["play", "--headless", "--duration", "60", "--seed", &seed.to_string()];
+    let record = ["--record", text(&stem), "--blue-tactics", tactics, "--yellow-tactics", tactics];
+    done(&[&play[..], &record].concat());
     stem.with_extension("trace")
 }
 
@@ -297,14 +274,10 @@ fn hosts_that_refine_passes_of_cases_decide_the_same_again() {
 /// A match that is played and recorded: the report of `play`, and the trace.
 fn recorded(name: &str, seed: &str) -> (Value, String) {
     let stem = scratch(name).display().to_string();
-    let out = Command::new(env!("CARGO_BIN_EXE_onetwo"))
-        .args(["play", "--json", "--duration", "90", "--seed", seed, "--record", &stem])
-        // Robots that are left to themselves play most cases.
-        .args(["--blue-tactics", "none", "--yellow-tactics", "none"])
-        .output()
-        .expect("the program starts");
-    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
-    (serde_json::from_slice(&out.stdout).expect("a report"), format!("{stem}.trace"))
+    let play = ["play", "--duration", "90", "--seed", seed, "--record", &stem];
+    // Robots that are left to themselves play most cases.
+    let free = ["--blue-tactics", "none", "--yellow-tactics", "none"];
+    (verb::json(&[&play[..], &free].concat(), 0), format!("{stem}.trace"))
 }
 
 /// What another verb answers to these lines.
@@ -390,9 +363,8 @@ fn gaps_are_played(lines: &str) {
     fs::write(&file, lines).expect("a file");
     let file = file.display().to_string();
     let gaps = ["cases", "coverage", "--league", "division-b", "--from", &file, "--gaps", "5"];
-    let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).args(gaps).output().expect("the program starts");
-    let gaps = String::from_utf8(out.stdout).expect("words in UTF-8");
-    assert!(gaps.lines().count() > 0, "{}", String::from_utf8_lossy(&out.stderr));
+    let gaps = done(&gaps);
+    assert!(gaps.lines().count() > 0);
     assert!(gaps.lines().all(|gap| lines.lines().any(|line| line == gap)), "{gaps}");
     let answers = asked(&["cases", "retrieve", "--league", "division-b"], &gaps);
     assert!(answers.iter().all(|answer| answer["case"].is_null()), "{answers:?}");
@@ -416,15 +388,11 @@ fn smaller_library() -> PathBuf {
 #[test]
 fn hosts_play_the_cases_of_a_library_and_a_trace_replays_without_it() {
     let (library, stem) = (smaller_library(), scratch("with-library"));
-    let mut play = Command::new(env!("CARGO_BIN_EXE_onetwo"));
-    play.args(["play", "--headless", "--duration", "90", "--seed", "11", "--library"]).arg(&library);
-    let out = play.arg("--record").arg(&stem).output().expect("the program starts");
-    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let play = ["play", "--headless", "--duration", "90", "--seed", "11", "--library", text(&library)];
+    done(&[&play[..], &["--record", text(&stem)]].concat());
     fs::remove_dir_all(&library).expect("it is there");
     let trace = stem.with_extension("trace");
-    let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).arg("replay").arg(&trace).output();
-    let out = out.expect("the program starts");
-    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    done(&["replay", text(&trace)]);
     let proposed = found_in_orders(&trace, |why| match why {
         OrderReason::PlaysCase { case } => Some(case.0),
         _ => None,

@@ -1,41 +1,29 @@
 //! `replay_output_cli`: tests of `onetwo replay` with `--send`, `--cut`, `--join` and `--export`.
 
+mod verb;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::net::UdpSocket;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use ssl::log::{MessageKind, Record, open};
 
-fn replay(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_onetwo")).arg("replay").args(arguments).output().expect("it starts")
-}
+use verb::recording;
 
 fn done(arguments: &[&str]) -> String {
-    let out = replay(arguments);
-    assert_eq!(out.status.code(), Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&out.stderr));
-    String::from_utf8(out.stdout).expect("UTF-8")
+    verb::done(&[&["replay"], arguments].concat())
 }
 
 fn refused(arguments: &[&str], code: i32) -> String {
-    let out = replay(arguments);
-    assert_eq!(out.status.code(), Some(code), "{arguments:?}");
-    String::from_utf8(out.stderr).expect("UTF-8")
-}
-
-fn recording(name: &str) -> String {
-    let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../protocol/ssl/tests/data");
-    directory.join(name).display().to_string()
+    verb::failed(&[&["replay"], arguments].concat(), code)
 }
 
 fn scratch(name: &str) -> String {
-    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("replay-output");
-    fs::create_dir_all(&directory).expect("a directory");
-    directory.join(name).display().to_string()
+    verb::scratch(name).display().to_string()
 }
 
 fn records(file: &str) -> Vec<Record> {
@@ -113,7 +101,7 @@ fn two_parts_of_a_log_joined_are_the_whole() {
 #[test]
 fn a_joined_file_that_starts_too_early_is_shifted_and_reported() {
     let (file, out) = (recording("grsim_divB_22s.log.gz"), scratch("twice.log.gz"));
-    let printed = replay(&[&file, "--join", &file, "--out", &out]);
+    let printed = verb::onetwo(&["replay", &file, "--join", &file, "--out", &out]);
     assert_eq!(printed.status.code(), Some(0));
     assert!(String::from_utf8_lossy(&printed.stderr).contains("shifted by"));
     let (once, twice) = (records(&file), records(&out));

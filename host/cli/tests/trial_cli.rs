@@ -1,18 +1,15 @@
 //! `trial_cli`: tests of `onetwo trial` and `play`.
 
-use std::path::PathBuf;
-use std::process::{Command, Output};
+mod verb;
+
+use std::process::Command;
 
 use serde_json::Value;
 
-fn onetwo(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_onetwo")).args(arguments).output().expect("the program starts")
-}
+use verb::{done, json, onetwo, scratch, text};
 
 fn report(arguments: &[&str]) -> Value {
-    let out = onetwo(&[&["trial", "--json"], arguments].concat());
-    assert_eq!(out.status.code(), Some(0), "{}", String::from_utf8_lossy(&out.stderr));
-    serde_json::from_slice(&out.stdout).expect("one JSON value on stdout and nothing else")
+    json(&[&["trial"], arguments].concat(), 0)
 }
 
 fn refused(arguments: &[&str], code: i32) -> String {
@@ -20,12 +17,6 @@ fn refused(arguments: &[&str], code: i32) -> String {
     assert_eq!(out.status.code(), Some(code), "{arguments:?}");
     assert!(out.stdout.is_empty(), "{arguments:?}");
     String::from_utf8(out.stderr).expect("words in UTF-8")
-}
-
-fn scratch(name: &str) -> PathBuf {
-    let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("trial-cli");
-    std::fs::create_dir_all(&directory).expect("a scratch folder");
-    directory.join(name)
 }
 
 #[test]
@@ -50,34 +41,6 @@ fn every_scenario_runs_against_both_kinds_of_opponents() {
 }
 
 #[test]
-fn the_report_has_the_fields_of_the_agreement() {
-    let report = report(&[]);
-    for key in [
-        "scenario",
-        "opponents",
-        "approach",
-        "backend",
-        "seed",
-        "outcome",
-        "time_s",
-        "possession",
-        "backups",
-        "out_by",
-        "cases",
-        "cycles",
-        "trace_hash",
-    ] {
-        assert!(report.get(key).is_some(), "{key} is missing");
-    }
-    assert!(report["possession"]["defender"].is_u64() && report["possession"]["midfield"].is_u64());
-    assert!(report["backups"]["A"].is_u64() && report["backups"]["B"].is_u64());
-    for key in ["cycle", "coordinator", "case", "symmetry", "match", "start_s", "end_s", "end"] {
-        assert!(report["cycles"][0].get(key).is_some(), "cycles: {key} is missing");
-    }
-    assert_eq!((&report["approach"], &report["backend"]), (&"cbr".into(), &"native".into()));
-}
-
-#[test]
 fn the_same_seed_is_the_same_trial_and_another_is_not() {
     let hash = |seed: &str, approach: &str| {
         report(&["--seed", seed, "--approach", approach])["trace_hash"].as_str().map(String::from)
@@ -99,9 +62,7 @@ fn a_setting_reaches_the_robots() {
 #[test]
 fn a_trial_is_reported_as_a_story_and_drawn() {
     let picture = scratch("play.svg");
-    let out = onetwo(&["trial", "--seed", "3", "--svg", picture.to_str().expect("UTF-8")]);
-    assert_eq!(out.status.code(), Some(0));
-    let story = String::from_utf8(out.stdout).expect("words in UTF-8");
+    let story = done(&["trial", "--seed", "3", "--svg", text(&picture)]);
     for label in ["coordinates and retrieves", "plays:", "trace ", "onetwo trial --scenario 3", "picture: "] {
         assert!(story.contains(label), "{label} is missing in\n{story}");
     }
@@ -122,7 +83,7 @@ fn what_cannot_be_done_is_reported_with_its_hint_and_ends_with_one() {
     assert!(refused(&["trial", "--library", "no/such/folder"], 1).contains("league.toml"));
     assert!(refused(&["trial", "--set", "thr_c=far"], 1).contains("thr_c"));
     let nowhere = scratch("no-folder").join("x.svg");
-    assert!(refused(&["trial", "--svg", nowhere.to_str().expect("UTF-8")], 1).contains("x.svg"));
+    assert!(refused(&["trial", "--svg", text(&nowhere)], 1).contains("x.svg"));
 }
 
 #[test]
