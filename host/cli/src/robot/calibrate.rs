@@ -92,10 +92,11 @@ pub(super) fn run(args: &CalibrateArgs) -> Result<(), Failure> {
 }
 
 fn of_kicks(key: &'static str, file: &Path, points: usize) -> Result<Change, DescriptionError> {
-    let measured = measurements::kicks(file)?;
+    let refused = |what| DescriptionError::Measurements { file: file.to_owned(), what };
+    let measured = measurements::kicks(file).map_err(refused)?;
     let fit = fit::pulses(&measurements::values(&measured), points)
         .map_err(|what| DescriptionError::NoFit { key, what })?;
-    measurements::check_kicks(file, &measured, &fit)?;
+    measurements::check_kicks(&measured, &fit).map_err(refused)?;
     let mut value = Array::new();
     for (speed, micros) in fit.table {
         let pair: Array = [Value::from(shortest(speed)), Value::from(micros as i64)].into_iter().collect();
@@ -110,10 +111,11 @@ fn of_drives(of: &Description, file: &Path, fitted: Fitted) -> Result<Change, De
         Fitted::Radius => "wheels.radius",
         Fitted::Gear => "wheels.encoder_gear",
     };
-    let driven = measurements::drives(file, of)?;
+    let refused = |what| DescriptionError::Measurements { file: file.to_owned(), what };
+    let driven = measurements::drives(file, of).map_err(refused)?;
     let (per_metre, deviation) = fit::counts_per_metre(&measurements::values(&driven))
         .map_err(|what| DescriptionError::NoFit { key, what })?;
-    measurements::check_drives(file, &driven, per_metre)?;
+    measurements::check_drives(&driven, per_metre).map_err(refused)?;
     let [lines, gear, radius] = ["wheels.encoder_lines", "wheels.encoder_gear", "wheels.radius"]
         .map(|path| f64::from(of.number(path)));
     let around = 2.0 * std::f64::consts::PI;

@@ -1,5 +1,5 @@
 //! `measurements`: what was measured on a bench, as CSV files: read, and refused where it cannot be true.
-//! Each refusal names file, line and remedy.
+//! Each refusal names line and remedy.
 
 use std::path::Path;
 
@@ -7,7 +7,6 @@ use robots::Description;
 
 use super::derived::COUNTER_MAX;
 use super::fit::{PulseFit, SPEED_OF_NO_KICK};
-use crate::robot_description::DescriptionError;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
@@ -39,27 +38,17 @@ pub(super) fn values(rows: &[Row]) -> Vec<(f32, f32)> {
     rows.iter().map(|row| row.values).collect()
 }
 
-fn refused(file: &Path, what: String) -> DescriptionError {
-    DescriptionError::Measurements { file: file.to_owned(), what }
-}
-
 /// Kicks: pulse, µs, and ball speed, m/s.
-pub(super) fn kicks(file: &Path) -> Result<Vec<Row>, DescriptionError> {
+pub(super) fn kicks(file: &Path) -> Result<Vec<Row>, String> {
     let rows = read(file, ["pulse_us", "speed"])?;
     for Row { line, values: (pulse, speed) } in &rows {
         if !PULSES.contains(pulse) {
             let range = format!("{} to {} µs", PULSES.start(), PULSES.end());
-            return Err(refused(
-                file,
-                format!("line {line}: pulse_us is {pulse}; give microseconds, {range}"),
-            ));
+            return Err(format!("line {line}: pulse_us is {pulse}; give microseconds, {range}"));
         }
         if !(0.0..=SPEED_MAX).contains(speed) {
             let range = format!("0 to {SPEED_MAX} m/s");
-            return Err(refused(
-                file,
-                format!("line {line}: speed is {speed}; give metres a second, {range}"),
-            ));
+            return Err(format!("line {line}: speed is {speed}; give metres a second, {range}"));
         }
     }
     let kicked = rows.iter().filter(|row| row.values.1 >= SPEED_OF_NO_KICK);
@@ -67,24 +56,22 @@ pub(super) fn kicks(file: &Path) -> Result<Vec<Row>, DescriptionError> {
     let last = kicked.map(|row| row.values.0).fold(0.0, f32::max);
     if first.is_finite() && last - first < PULSE_SPAN_MIN {
         let span = last - first;
-        let what = format!(
+        return Err(format!(
             "the pulses that move the ball lie within {span:.0} µs; measure from the shortest to the longest, {PULSE_SPAN_MIN} µs apart at least"
-        );
-        return Err(refused(file, what));
+        ));
     }
     // A pulse that does not move the ball is shorter than all that do.
     let none = rows.iter().find(|row| row.values.1 < SPEED_OF_NO_KICK && row.values.0 > first);
     if let Some(Row { line, values: (pulse, speed) }) = none {
-        let what = format!(
+        return Err(format!(
             "line {line}: {pulse} µs gave {speed} m/s, and shorter pulses moved the ball; was the capacitor full? Measure it again, or take the line out"
-        );
-        return Err(refused(file, what));
+        ));
     }
     Ok(rows)
 }
 
 /// Refuses a kick that the fitted table does not describe.
-pub(super) fn check_kicks(file: &Path, rows: &[Row], fit: &PulseFit) -> Result<(), DescriptionError> {
+pub(super) fn check_kicks(rows: &[Row], fit: &PulseFit) -> Result<(), String> {
     let Some(worst) = rows.iter().max_by(|a, b| a.off_table(fit).abs().total_cmp(&b.off_table(fit).abs()))
     else {
         return Ok(());
@@ -94,15 +81,14 @@ pub(super) fn check_kicks(file: &Path, rows: &[Row], fit: &PulseFit) -> Result<(
     if worst.off_table(fit).abs() <= SPEED_OFF_MIN + SPEED_OFF_SHARE * fitted {
         return Ok(());
     }
-    let what = format!(
+    Err(format!(
         "line {}: {pulse} µs gave {speed} m/s, and the other kicks make {fitted:.2} m/s of it; measure it again, or take the line out",
         worst.line
-    );
-    Err(refused(file, what))
+    ))
 }
 
 /// Drives: distance, m, and counts of a wheel along them.
-pub(super) fn drives(file: &Path, of: &Description) -> Result<Vec<Row>, DescriptionError> {
+pub(super) fn drives(file: &Path, of: &Description) -> Result<Vec<Row>, String> {
     let rows = read(file, ["distance_m", "counts"])?;
     let turn = 2.0 * std::f32::consts::PI * of.number("wheels.radius");
     let per_metre = 4.0 * of.number("wheels.encoder_lines") * of.number("wheels.encoder_gear").abs() / turn;
@@ -110,39 +96,37 @@ pub(super) fn drives(file: &Path, of: &Description) -> Result<Vec<Row>, Descript
     for Row { line, values: (distance, counts) } in &rows {
         if !DISTANCES.contains(distance) {
             let range = format!("{} to {} m", DISTANCES.start(), DISTANCES.end());
-            let what = format!("line {line}: distance_m is {distance}; give metres by tape, {range}");
-            return Err(refused(file, what));
+            return Err(format!("line {line}: distance_m is {distance}; give metres by tape, {range}"));
         }
         if counts.fract() != 0.0 {
-            return Err(refused(file, format!("line {line}: counts is {counts}; counts are whole numbers")));
+            return Err(format!("line {line}: counts is {counts}; counts are whole numbers"));
         }
         // More counts than a counter has were added up by who measured.
         if distance * per_metre > COUNTER_SHARE * COUNTER_MAX && counts.abs() <= COUNTER_MAX {
-            let what = format!(
+            return Err(format!(
                 "line {line}: {distance} m are {:.0} counts by the description, and a counter of 16 bits begins again after {COUNTER_MAX}: drive at most {:.1} m, or give the sum of the counts",
                 distance * per_metre,
                 (10.0 * COUNTER_SHARE * longest).floor() / 10.0
-            );
-            return Err(refused(file, what));
+            ));
         }
     }
     if rows.len() < DRIVES_MIN {
-        let what =
-            format!("{} drives; measure at least {DRIVES_MIN}, so that a wrong one is seen", rows.len());
-        return Err(refused(file, what));
+        return Err(format!(
+            "{} drives; measure at least {DRIVES_MIN}, so that a wrong one is seen",
+            rows.len()
+        ));
     }
     if let Some(other) = rows.iter().find(|row| row.values.1 * rows[0].values.1 < 0.0) {
-        let what = format!(
+        return Err(format!(
             "line {}: the counts fall, those of line {} rise; push the robot the same way, and give one wheel's counts",
             other.line, rows[0].line
-        );
-        return Err(refused(file, what));
+        ));
     }
     Ok(rows)
 }
 
 /// Refuses a drive that is not as the others.
-pub(super) fn check_drives(file: &Path, rows: &[Row], per_metre: f64) -> Result<(), DescriptionError> {
+pub(super) fn check_drives(rows: &[Row], per_metre: f64) -> Result<(), String> {
     // The median is the drives' own where the mean is drawn away by the one that is wrong.
     let mut ratios: Vec<_> = rows.iter().map(Row::ratio).collect();
     ratios.sort_by(f64::total_cmp);
@@ -154,39 +138,36 @@ pub(super) fn check_drives(file: &Path, rows: &[Row], per_metre: f64) -> Result<
         return Ok(());
     }
     let (distance, counts) = worst.values;
-    let what = format!(
+    Err(format!(
         "line {}: {distance} m gave {counts} counts, {:.0} % off the others; measure it again, or take the line out",
         worst.line,
         100.0 * worst.off_ratio(middle)
-    );
-    Err(refused(file, what))
+    ))
 }
 
 /// Two columns of a CSV file, by their names.
-fn read(file: &Path, columns: [&str; 2]) -> Result<Vec<Row>, DescriptionError> {
-    let text =
-        foreign::read_text(file, MEASUREMENTS_MAX).map_err(|error| refused(file, error.to_string()))?;
+fn read(file: &Path, columns: [&str; 2]) -> Result<Vec<Row>, String> {
+    let text = foreign::read_text(file, MEASUREMENTS_MAX).map_err(|error| error.to_string())?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|error| refused(file, error.to_string()))?.clone();
+    let header = reader.headers().map_err(|error| error.to_string())?.clone();
     let places = columns.map(|column| header.iter().position(|name| name == column));
     let [Some(first), Some(second)] = places else {
-        let what = format!("the first line must name the columns {} and {}", columns[0], columns[1]);
-        return Err(refused(file, what));
+        return Err(format!("the first line must name the columns {} and {}", columns[0], columns[1]));
     };
     if let Some(twice) =
         columns.iter().find(|column| header.iter().filter(|name| name == *column).count() > 1)
     {
-        return Err(refused(file, format!("the first line names {twice} twice")));
+        return Err(format!("the first line names {twice} twice"));
     }
     let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|error| refused(file, error.to_string()))?;
+        let record = record.map_err(|error| error.to_string())?;
         let line = record.position().map_or(0, csv::Position::line);
         let values = (number(&record, first), number(&record, second));
         match values {
             (Ok(first), Ok(second)) => rows.push(Row { line, values: (first, second) }),
-            (Err(text), _) => return Err(refused(file, no_number(line, columns[0], &text))),
-            (_, Err(text)) => return Err(refused(file, no_number(line, columns[1], &text))),
+            (Err(text), _) => return Err(no_number(line, columns[0], &text)),
+            (_, Err(text)) => return Err(no_number(line, columns[1], &text)),
         }
     }
     Ok(rows)
@@ -247,10 +228,10 @@ mod tests {
         let file = written(&format!("distance_m,counts\n{rows}"));
         let checked = drives(&file, &ours).and_then(|rows| {
             let (per_metre, _) = fit::counts_per_metre(&values(&rows)).unwrap();
-            check_drives(&file, &rows, per_metre)
+            check_drives(&rows, per_metre)
         });
         fs::remove_file(file).unwrap();
-        checked.err().map(|error| error.to_string())
+        checked.err()
     }
 
     /// The same for kicks.
@@ -258,10 +239,10 @@ mod tests {
         let file = written(&format!("pulse_us,speed\n{rows}"));
         let checked = kicks(&file).and_then(|rows| {
             let fit = fit::pulses(&values(&rows), 6).unwrap();
-            check_kicks(&file, &rows, &fit)
+            check_kicks(&rows, &fit)
         });
         fs::remove_file(file).unwrap();
-        checked.err().map(|error| error.to_string())
+        checked.err()
     }
 
     #[test]
@@ -317,10 +298,10 @@ mod tests {
     fn columns_are_found_by_name_and_each_once() {
         let file = written("speed, pulse_us\n1.1,1000\n2.4,2000\n");
         assert_eq!(values(&read(&file, ["pulse_us", "speed"]).unwrap()), [(1000.0, 1.1), (2000.0, 2.4)]);
-        let error = read(&file, ["distance_m", "counts"]).unwrap_err().to_string();
+        let error = read(&file, ["distance_m", "counts"]).unwrap_err();
         assert!(error.contains("columns distance_m and counts"), "{error}");
         fs::write(&file, "speed,speed,pulse_us\n1,1,1\n").unwrap();
-        assert!(read(&file, ["pulse_us", "speed"]).unwrap_err().to_string().contains("speed twice"));
+        assert!(read(&file, ["pulse_us", "speed"]).unwrap_err().contains("speed twice"));
         fs::remove_file(file).unwrap();
     }
 }
