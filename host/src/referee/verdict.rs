@@ -4,11 +4,12 @@ use std::fmt;
 
 use protocol::Duration;
 use rules::state::{CommandVerdict, RefereeCommand};
+use serde::Serialize;
 
 use super::identity::SourceKey;
 
-/// Numbers of packets by result.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Numbers of packets by result. Serialized are those that a report of a log file has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RefereeCounts {
     /// Packets in order, of the source that is followed.
     pub taken: u64,
@@ -23,15 +24,19 @@ pub struct RefereeCounts {
     /// Packets of a source that is not followed; their HALT and STOP are obeyed.
     pub other_source: u64,
     /// Packets of a source that `--referee-source` excludes.
+    #[serde(skip)]
     pub excluded: u64,
     /// Commands with an unknown number, taken for HALT.
     pub unknown: u64,
     /// Packets whose stamp or counter does not fit, other than [`RefereeCounts::old`].
+    #[serde(skip)]
     pub doubted: u64,
     /// HALT and STOP out of order, which were obeyed: of [`RefereeCounts::old`] and
     /// [`RefereeCounts::doubted`].
+    #[serde(skip)]
     pub restrained: u64,
     /// Steps of the referee's clock or counter that were followed.
+    #[serde(skip)]
     pub steps: u64,
 }
 

@@ -53,6 +53,7 @@ pub mod senders;
 
 use motion::ball::BallModel;
 use protocol::{Duration, Instant, RobotId, Who};
+use serde::Serialize;
 use ssl::vision::{DetectionFrame, WrapperPacket};
 
 pub use ball::BallCounts;
@@ -110,10 +111,11 @@ pub enum VisionVerdict {
     Restarted,
 }
 
-/// Numbers of packets by result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+/// Numbers of packets by result. Serialized are those that a report of a log file has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize)]
 pub struct TrackingCounts {
     /// Packets without a camera frame.
+    #[serde(skip)]
     pub no_image: u64,
     /// Camera frames that were the newest when they came, restarts included.
     pub newest: u64,
@@ -130,6 +132,7 @@ pub struct TrackingCounts {
     /// Number of restarts of vision's clock.
     pub restarts: u64,
     /// Implausible fields in packets; the previous field was kept.
+    #[serde(skip)]
     pub geometry_refused: u64,
 }
 

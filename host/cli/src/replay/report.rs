@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use feed::recording::{ClockStep, Rate, RefereeEvent, Score, Sheet};
 use foreign::printable;
-use host::{referee, tracking};
+use host::referee::RefereeCounts;
+use host::tracking::TrackingCounts;
 use serde::Serialize;
 use ssl::log::MessageKind;
 use ssl::vision::WrapperPacket;
@@ -56,7 +57,7 @@ pub(super) struct Report {
     /// Gaps beyond those that are listed.
     pub(super) gaps_more: u64,
     pub(super) tracker: Tracker,
-    pub(super) referee: Referee,
+    pub(super) referee: RefereeCounts,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) host: Option<Host>,
 }
@@ -106,26 +107,9 @@ pub(super) struct Gap {
 /// Counts of camera frames by what the tracker did with them.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Tracker {
-    pub(super) images: u64,
-    pub(super) newest: u64,
-    pub(super) reordered: u64,
-    pub(super) repeated: u64,
-    pub(super) late: u64,
-    pub(super) nonsense: u64,
-    pub(super) foreign: u64,
-    pub(super) restarts: u64,
-}
-
-/// Counts of the referee's packets by what was done with them.
-#[derive(Debug, Default, Serialize)]
-pub(super) struct Referee {
-    pub(super) taken: u64,
-    pub(super) commands: u64,
-    pub(super) missed: u64,
-    pub(super) old: u64,
-    pub(super) copies: u64,
-    pub(super) other_source: u64,
-    pub(super) unknown: u64,
+    images: u64,
+    #[serde(flatten)]
+    counts: TrackingCounts,
 }
 
 /// Output of a host for the log file.
@@ -164,7 +148,7 @@ impl Report {
     /// Notes what was counted and not used; after [`take`](Self::take).
     pub(super) fn note_unused(&mut self, geometry_refused: u64) {
         let images: u64 = self.cameras.values().map(|camera| camera.images).sum();
-        let (tracker, referee) = (&self.tracker, &self.referee);
+        let (tracker, referee) = (&self.tracker.counts, &self.referee);
         let tracked = tracker.newest + tracker.reordered + tracker.restarts;
         let heard = referee.taken + referee.old + referee.copies;
         let told = self.messages.get(&MessageKind::Refbox2013.to_string()).map_or(0, |kind| kind.messages);
@@ -177,26 +161,9 @@ impl Report {
         self.unused.extend(unused.into_iter().flatten());
     }
 
-    pub(super) fn take(&mut self, tracker: &tracking::TrackingCounts, referee: referee::RefereeCounts) {
-        self.tracker = Tracker {
-            images: tracker.images(),
-            newest: tracker.newest,
-            reordered: tracker.reordered,
-            repeated: tracker.repeated,
-            late: tracker.late,
-            nonsense: tracker.nonsense,
-            foreign: tracker.foreign,
-            restarts: tracker.restarts,
-        };
-        self.referee = Referee {
-            taken: referee.taken,
-            commands: referee.commands,
-            missed: referee.missed,
-            old: referee.old,
-            copies: referee.copies,
-            other_source: referee.other_source,
-            unknown: referee.unknown,
-        };
+    pub(super) fn take(&mut self, tracker: &TrackingCounts, referee: RefereeCounts) {
+        self.tracker = Tracker { images: tracker.images(), counts: *tracker };
+        self.referee = referee;
     }
 
     pub(super) fn text(&self) -> String {
@@ -256,10 +223,10 @@ impl Report {
             numbers(&self.robots.yellow)
         ));
         lines.push(format!("fastest ball: {:.2} m/s", self.ball_speed_max));
-        let t = &self.tracker;
+        let Tracker { images, counts: t } = &self.tracker;
         lines.push(format!(
-            "tracker: {} images, {} newest, {} put in between, {} repeated, {} late, {} of another clock, {} nonsense, {} restarts",
-            t.images, t.newest, t.reordered, t.repeated, t.late, t.foreign, t.nonsense, t.restarts
+            "tracker: {images} images, {} newest, {} put in between, {} repeated, {} late, {} of another clock, {} nonsense, {} restarts",
+            t.newest, t.reordered, t.repeated, t.late, t.foreign, t.nonsense, t.restarts
         ));
         let r = &self.referee;
         lines.push(format!(
