@@ -9,45 +9,19 @@ use protocol::Instant;
 use protocol::robot_io::{Health, OmniKick};
 use rules::{League, Phase, Side};
 
-/// Faults that are tested: a robot drives with 3 m/s, then one fault lasts for three seconds.
-const CAUSES: [Cause; 9] = [
-    Cause::Silence,
-    Cause::NoCommand,
-    Cause::Halt,
-    Cause::Lost,
-    Cause::Tipped,
-    Cause::Spinning,
-    Cause::Battery,
-    Cause::WantsNaN,
-    Cause::MeasuresNaN,
-];
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Cause {
-    Silence,
-    NoCommand,
-    Halt,
-    Lost,
-    Tipped,
-    Spinning,
-    Battery,
-    WantsNaN,
-    MeasuresNaN,
-}
-
-impl Cause {
-    const fn description(self) -> &'static str {
-        match self {
-            Self::Silence => "no authentic frame of the host",
-            Self::NoCommand => "the host speaks, but not to this robot",
-            Self::Halt => "HALT, or a time-out",
-            Self::Lost => "no source reports its position",
-            Self::Tipped => "it lies on its side",
-            Self::Spinning => "it turns faster than 30 rad/s",
-            Self::Battery => "the battery is below 14 V",
-            Self::WantsNaN => "the brain outputs NaN",
-            Self::MeasuresNaN => "the encoders report NaN",
-        }
+geometry::labels! {
+    /// Faults that are tested: a robot drives with 3 m/s, then one fault lasts for three seconds.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Cause {
+        Silence = "no authentic frame of the host",
+        NoCommand = "the host speaks, but not to this robot",
+        Halt = "HALT, or a time-out",
+        Lost = "no source reports its position",
+        Tipped = "it lies on its side",
+        Spinning = "it turns faster than 30 rad/s",
+        Battery = "the battery is below 14 V",
+        WantsNaN = "the brain outputs NaN",
+        MeasuresNaN = "the encoders report NaN",
     }
 }
 
@@ -94,10 +68,10 @@ pub(super) fn table() -> String {
          |---|---:|---:|---:|---:|---:|\n",
     );
     let ms = |time: Option<u64>| time.map_or_else(|| "–".to_owned(), |ms| format!("{ms} ms"));
-    for cause in CAUSES {
+    for cause in Cause::ALL {
         let Outcome { slow, brakes, stands, released, again } = outcome(cause);
         let row = [slow, brakes, stands, released, again].map(ms).join(" | ");
-        let _ = writeln!(text, "| {} | {row} |", cause.description());
+        let _ = writeln!(text, "| {} | {row} |", cause.label());
     }
     text
 }
@@ -251,6 +225,6 @@ mod tests {
     #[test]
     fn the_table_has_a_row_for_every_cause() {
         let rows = table().lines().count();
-        assert_eq!(rows, CAUSES.len() + 2);
+        assert_eq!(rows, Cause::ALL.len() + 2);
     }
 }
