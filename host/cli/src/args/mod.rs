@@ -11,6 +11,14 @@ use casebase::SettingError;
 use clap::Args;
 use thiserror::Error;
 
+use crate::Failure;
+
+/// That many threads; as many as cores by default.
+pub(crate) fn threads(jobs: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.map_or(0, usize::from));
+    pool.build().map_err(Failure::Threads)
+}
+
 /// Which libraries: every built-in league unless a directory is given.
 #[derive(Debug, Args)]
 pub(crate) struct DirectoryArgs {

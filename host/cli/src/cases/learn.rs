@@ -15,7 +15,7 @@ use study::learning::{
 use study::store::Shard;
 
 use crate::Failure;
-use crate::args::{LibraryArgs, VERSION, parsers};
+use crate::args::{LibraryArgs, VERSION, parsers, threads};
 use crate::destination::{self, DestinationError, FileKind};
 use crate::library;
 use crate::output::print_text;
@@ -105,8 +105,7 @@ pub(super) fn run(args: &LearnArgs) -> Result<ExitCode, Failure> {
         "world": hil_sim::world_hash(), "evidence": hash.to_string(),
     });
     destination::make_directory(&args.out)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
-    let pool = pool.map_err(Failure::Threads)?;
+    let pool = threads(args.jobs)?;
     let bar = Progress::of(budget, if matches { "scenes" } else { "trials" });
     let on_trials = |trials| bar.add(trials);
     let learned = pool.install(|| {

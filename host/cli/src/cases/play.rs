@@ -17,7 +17,7 @@ use rules::League;
 
 use super::failure::NoCase;
 use crate::Failure;
-use crate::args::{LibraryArgs, SettingsArgs};
+use crate::args::{LibraryArgs, SettingsArgs, threads};
 use crate::output::{self, print_text};
 use crate::progress::Progress;
 
@@ -117,8 +117,7 @@ fn play(
     cases: &[Case<'_>],
     oppositions: &[Opposition],
 ) -> Result<Vec<Score>, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
-    let pool = pool.map_err(Failure::Threads)?;
+    let pool = threads(args.jobs)?;
     let attempts = u64::from(args.trials) * (cases.len() * oppositions.len()) as u64;
     // Drawn on stderr where that is a terminal, and nowhere else.
     let bar = Progress::of(attempts, "");

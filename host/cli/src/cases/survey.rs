@@ -16,7 +16,7 @@ use super::failure::{FromError, LineFault, SurveyError};
 use super::lines::for_each_problem;
 use super::playable::Playable;
 use crate::Failure;
-use crate::args::{LibraryArgs, SettingsArgs, parsers};
+use crate::args::{LibraryArgs, SettingsArgs, parsers, threads};
 use crate::progress::Progress;
 
 /// Arguments of both verbs.
@@ -129,11 +129,8 @@ impl<'a> Trial<'a> {
         let edge = self.args.cell.unwrap_or_else(|| Cells::suitable_edge_mm(base.field()));
         let cells = Cells::new(base.field(), edge).map_err(|error| SurveyError::Cell(edge, error))?;
         let survey = Survey::new(base, &self.chosen.settings, cells).map_err(SurveyError::Wider)?;
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.args.jobs.map_or(0, usize::from))
-            .build()
-            .map_err(Failure::Threads)?;
-        let counters = pool.install(|| counters(&survey, self.len(), |number| self.problem(number)));
+        let counters =
+            threads(self.args.jobs)?.install(|| counters(&survey, self.len(), |number| self.problem(number)));
         if counters.problems == 0 {
             return Err(SurveyError::NothingLeft.into());
         }

@@ -14,7 +14,7 @@ use study::store::Experiment;
 use super::report::insert;
 use super::work;
 use crate::Failure;
-use crate::args::parsers::league;
+use crate::args::{parsers::league, threads};
 
 /// Which tries, and how they are printed.
 #[derive(Debug, Args)]
@@ -70,8 +70,7 @@ pub(super) fn run(args: &SkillsArgs) -> Result<ExitCode, Failure> {
     if args.story {
         return story(&plan);
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
-    let pool = pool.map_err(Failure::Threads)?;
+    let pool = threads(args.jobs)?;
     let results = pool.install(|| plan.play_all(&|| ()))?;
     let table = rows(&plan, &results);
     if args.json {

@@ -15,7 +15,7 @@ use study::store::{EvaluationError, Experiment, RunProgress, Shard, StoredExperi
 
 use super::report::{self, ReportArgs};
 use crate::Failure;
-use crate::args::VERSION;
+use crate::args::{VERSION, threads};
 use crate::destination::{self, DestinationError, FileKind};
 use crate::output;
 use crate::picture;
@@ -122,12 +122,6 @@ pub(super) fn play(
     title: &str,
 ) -> Result<Vec<TrialRow>, Failure> {
     with_bar(pool, title, |on_progress| evaluation.play_shard(shard, file, on_progress))
-}
-
-/// That many threads; as many as cores by default.
-fn threads(jobs: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.map_or(0, usize::from));
-    pool.build().map_err(Failure::Threads)
 }
 
 /// Plays all `of` jobs of a plan whose rows are not stored.
