@@ -1,8 +1,8 @@
 //! `checks`: values of a description against each other: what no single range finds.
 
 use crate::description::{Description, Value};
-use crate::finding::{Finding, Severity};
 use crate::wheels::{condition, wheel_slots};
+use foreign::{Finding, Severity};
 
 impl Description {
     /// Reads `text`; `file` names it in findings. The error is every fault that was found, in the file's

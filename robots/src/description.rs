@@ -6,9 +6,9 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::finding::{Finding, Severity};
 use crate::keys::{KEYS, Key, Kind};
 use crate::wheels::Wheel;
+use foreign::{Finding, Severity};
 
 /// A value of a description.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,7 +132,7 @@ impl Description {
         message: String,
         hint: String,
     ) -> Finding {
-        Finding { code, severity, file: self.file.clone(), line: self.place(path).1, message, hint }
+        Finding { code, severity, file: self.file.as_str().into(), line: self.place(path).1, message, hint }
     }
 }
 
@@ -150,7 +150,7 @@ impl Reader<'_> {
         let before = self.text.get(..span.start).unwrap_or_default();
         let line = 1 + before.matches('\n').count() as u32;
         let finding =
-            Finding { code, severity: Severity::Error, file: self.file.to_owned(), line, message, hint };
+            Finding { code, severity: Severity::Error, file: self.file.into(), line, message, hint };
         self.findings.push(finding);
     }
 

@@ -11,13 +11,12 @@
 
 mod checks;
 mod description;
-mod finding;
 mod keys;
 mod place;
 mod wheels;
 
 pub use description::{Description, Value};
-pub use finding::{Finding, Severity};
+pub use foreign::{Finding, Severity};
 pub use keys::{KEYS, Key, Kind};
 pub use place::{Chosen, Unreadable, VARIABLE, chosen};
 pub use wheels::{Wheel, WheelSlots, condition, wheel_slots};

@@ -11,9 +11,9 @@ use casebase::{
 use crate::codes::code;
 use crate::document::{Reader, Table, Value};
 use crate::files::SourceFile;
-use crate::finding::{Finding, Severity};
 use crate::keys::{self, COORDINATES};
 use crate::league::CaseLeague;
+use foreign::{Finding, Severity};
 
 /// A case as its author wrote it. Spans are byte ranges in its file.
 #[derive(Clone, Debug)]

@@ -6,8 +6,8 @@ use casebase::{CaseRobot, LegKind, Symmetry};
 use crate::authored::Authored;
 use crate::codes::code;
 use crate::files::SourceFile;
-use crate::finding::{Finding, Severity};
 use crate::league::CaseLeague;
+use foreign::{Finding, Severity};
 
 /// Every error of a case that was read without a fault.
 pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &CaseLeague) -> Vec<Finding> {

@@ -4,7 +4,7 @@
 //! Errors are those that docs/case-format.md §1.2 lists; everything else doubtful is a warning and never
 //! stops retrieval.
 
-use crate::finding::Severity;
+use foreign::Severity;
 
 /// One kind of finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

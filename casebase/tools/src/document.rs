@@ -8,8 +8,8 @@ use toml::de::{DeTable, DeValue};
 
 use crate::codes::code;
 use crate::files::SourceFile;
-use crate::finding::{Finding, Severity};
 use crate::keys::COORDINATES;
+use foreign::{Finding, Severity};
 
 /// A file being read, with its findings.
 pub(crate) struct Reader<'f> {

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::codes::code;
-use crate::finding::{Finding, Severity};
+use foreign::{Finding, Severity};
 
 /// A file of a library, read.
 #[derive(Clone, Debug)]

@@ -8,9 +8,9 @@ use casebase::{CaseKick, FieldMm, KickAim, KickId, Pass, Primitive};
 use crate::codes::code;
 use crate::document::{Reader, Table, Value};
 use crate::files::SourceFile;
-use crate::finding::Finding;
 use crate::keys::{self, COORDINATES, DEGREES, INNER, POSITIVE, SIDES};
 use crate::lineup::Lineup;
+use foreign::Finding;
 
 /// A league's rules, as `league.toml` states them.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ impl CaseLeague {
     pub(crate) fn read(file: &SourceFile) -> (Option<Self>, Vec<Finding>) {
         let mut reader = Reader::new(file);
         let league = reader.parse().and_then(|root| read_league(&mut reader, &Table::root(&root)));
-        let faulty = reader.findings.iter().any(|finding| finding.severity == crate::Severity::Error);
+        let faulty = reader.findings.iter().any(|finding| finding.severity == foreign::Severity::Error);
         (league.filter(|_| !faulty), reader.findings)
     }
 

@@ -18,7 +18,6 @@ pub mod coverage;
 mod document;
 mod encode;
 mod files;
-mod finding;
 mod grid;
 pub mod keys;
 mod league;
@@ -37,7 +36,7 @@ pub use codes::{CODES, CodeEntry, code, entry};
 pub use counterfactual::{Counterfactual, CounterfactualObstacle, Entity, Move, counterfactual};
 pub use encode::Table;
 pub use files::{CASE_FILE_LEN_MAX, Files, SourceFile, SourcePlace};
-pub use finding::{Finding, Severity};
+pub use foreign::{Finding, Severity};
 pub use league::CaseLeague;
 pub use library::{
     Library, Reduction, build, build_reduced, build_without_warnings, load, load_with_progress,

@@ -11,10 +11,10 @@ use crate::check::errors;
 use crate::codes::code;
 use crate::encode::{Table, encode};
 use crate::files::{Files, SourcePlace};
-use crate::finding::{Finding, Severity};
 use crate::league::CaseLeague;
 use crate::lineup::Lineup;
 use crate::sample::Sampler;
+use foreign::{Finding, Severity};
 
 /// One league's cases, checked, mirrored and encoded. Lists have one entry per authored case, in the order of
 /// ids.

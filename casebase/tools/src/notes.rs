@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::files::SourceFile;
-use crate::finding::{Finding, Severity};
+use foreign::{Finding, Severity};
 
 /// Collects the warnings about one file.
 pub(crate) struct Notes<'n> {

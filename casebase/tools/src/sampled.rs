@@ -5,8 +5,8 @@ use casebase::{RetrievalSettings, SettingError};
 
 use crate::codes::code;
 use crate::coverage::{CaseCounters, Cells, Counters, Survey, VERDICTS};
-use crate::finding::{Finding, Severity};
 use crate::library::Library;
+use foreign::{Finding, Severity};
 
 impl Library {
     /// Counts problems over the library, with retrieval's defaults and the field as one cell: the input of

@@ -13,9 +13,9 @@ use casebase::{
 use protocol::RobotId;
 
 use crate::files::{Files, SourceFile};
-use crate::finding::Finding;
 use crate::league::CaseLeague;
 use crate::library::build;
+use foreign::Finding;
 
 /// A drafted case file.
 #[derive(Clone, Debug, PartialEq, Eq)]

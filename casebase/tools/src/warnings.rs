@@ -13,10 +13,10 @@ use protocol::{CaseId, RobotId};
 use crate::authored::{Authored, Opponent};
 use crate::codes::code;
 use crate::files::Files;
-use crate::finding::{Finding, Severity};
 use crate::league::CaseLeague;
 use crate::notes::Notes;
 use crate::{plans, self_blocking};
+use foreign::{Finding, Severity};
 
 /// Every warning about cases that passed all checks; `report` is called with the number of cases done.
 pub(crate) fn warnings(

@@ -6,6 +6,7 @@
 //! - [`printable`] escapes what a terminal executes instead of displaying it: control characters, and the
 //!   marks that turn the direction of writing. [`Printable`] does the same to everything that is written
 //!   through it, line ends aside.
+//! - A [`Finding`] is what is wrong with such a file, in one line.
 //!
 //! **Invariants.** No input panics; nothing larger than the limit is allocated; [`printable`] changes no
 //! other character.
@@ -13,7 +14,9 @@
 #![forbid(unsafe_code)]
 
 mod file;
+mod finding;
 mod text;
 
 pub use file::{open, read, read_from, read_text, replace};
+pub use finding::{Finding, Severity};
 pub use text::{Printable, excerpt, printable, printable_path};

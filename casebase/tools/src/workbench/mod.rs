@@ -19,9 +19,9 @@ use casebase::Symmetry;
 
 use crate::authored::Authored;
 use crate::files::Files;
-use crate::finding::Finding;
 use crate::league::CaseLeague;
 use crate::library::{Library, build};
+use foreign::Finding;
 
 pub use action_text::{ActionText, TurnText};
 pub use case_text::CaseText;

@@ -8,8 +8,8 @@ use serde::Serialize;
 use super::action_text::ActionText;
 use super::follow;
 use crate::authored::Authored;
-use crate::finding::Finding;
 use crate::league::CaseLeague;
+use foreign::Finding;
 
 /// All that is shown of a case file. Lists are empty where it cannot be read.
 #[derive(Clone, Debug, PartialEq, Serialize)]

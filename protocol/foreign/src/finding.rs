@@ -1,9 +1,10 @@
-//! `finding`: findings: what is wrong with a library, where, and how to fix it (docs/case-format.md §1.2).
+//! `finding`: what is wrong with a file from outside, where, and how to fix it: of case files
+//! (docs/case-format.md §1.2) and descriptions of robots.
 
 use std::fmt;
 use std::path::PathBuf;
 
-use foreign::{excerpt, printable};
+use crate::text::{excerpt, printable};
 
 /// Maximum length of a message, characters: it may quote the file.
 const MESSAGE_LEN: usize = 1000;
@@ -13,7 +14,7 @@ const MESSAGE_LEN: usize = 1000;
 pub struct Finding {
     /// Code of its kind, for look-up.
     pub code: &'static str,
-    /// Severity: an error refuses the library.
+    /// Severity: an error refuses the file.
     pub severity: Severity,
     /// Path of the file at fault.
     pub file: PathBuf,
@@ -28,9 +29,9 @@ pub struct Finding {
 /// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The library is refused.
+    /// The file, or the library that it is of, is refused.
     Error,
-    /// Doubtful; the library can be used.
+    /// Doubtful; it can be used.
     Warning,
 }
 
@@ -56,12 +57,11 @@ impl fmt::Display for Finding {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::codes::code;
 
     #[test]
     fn a_finding_reads_as_file_line_kind_words_and_hint() {
         let finding = Finding {
-            code: code::BAD_SCOPE,
+            code: "bad-scope",
             severity: Severity::Error,
             file: PathBuf::from("lib/center/a.toml"),
             line: 3,
@@ -75,7 +75,7 @@ mod tests {
     #[test]
     fn a_finding_in_a_file_of_a_hostile_name_stays_one_line_without_control_characters() {
         let finding = Finding {
-            code: code::BAD_SCOPE,
+            code: "bad-scope",
             severity: Severity::Warning,
             file: PathBuf::from("lib/center/\u{1b}[2Ja\n.toml"),
             line: 1,
