@@ -15,13 +15,7 @@ use ssl::vision::{
     DetectionBall, DetectionFrame, DetectionRobot, GeometryData, GeometryFieldSize, WrapperPacket,
 };
 
-use verb::{directory, done, failed};
-
-/// A name in an empty directory of the test's own.
-fn scratch(test: &str) -> impl Fn(&str) -> String {
-    let directory = directory(test);
-    move |name| directory.join(name).display().to_string()
-}
+use verb::{done, failed, names_in};
 
 /// Plays and plays to goal by case.
 fn counted(file: &str) -> BTreeMap<String, (u64, u64)> {
@@ -45,7 +39,7 @@ fn recorded(stem: &str, seed: &str) {
 
 #[test]
 fn evidence_of_a_trace_agrees_with_its_ledger_case_by_case_in_any_order_of_files() {
-    let at = scratch("trace");
+    let at = names_in("trace");
     recorded(&at("a"), "4");
     recorded(&at("b"), "3");
     let [a, b] = [at("a.trace"), at("b.trace")];
@@ -77,7 +71,7 @@ fn evidence_of_a_trace_agrees_with_its_ledger_case_by_case_in_any_order_of_files
 
 #[test]
 fn a_trace_of_another_league_or_library_is_refused_with_what_to_give_instead() {
-    let at = scratch("other");
+    let at = names_in("other");
     recorded(&at("m"), "3");
     let (trace, out) = (at("m.trace"), at("out"));
     for verb in [
@@ -172,7 +166,7 @@ fn a_pass_and_a_shot(file: &str) {
 
 #[test]
 fn a_log_with_one_pass_and_a_shot_becomes_one_case_of_that_geometry() {
-    let at = scratch("log");
+    let at = names_in("log");
     a_pass_and_a_shot(&at("match.log"));
     a_pass_and_a_shot(&at("match.log.gz"));
     let draft = |from: &str, out: &str| {
@@ -210,7 +204,7 @@ fn a_log_with_one_pass_and_a_shot_becomes_one_case_of_that_geometry() {
 
 #[test]
 fn a_recorded_trial_counts_its_plays_as_its_report_and_its_play_becomes_a_draft() {
-    let at = scratch("trial");
+    let at = names_in("trial");
     let mut files = Vec::new();
     let mut cycles = BTreeMap::<String, (u64, u64)>::new();
     for seed in 1..=6 {
@@ -253,7 +247,7 @@ fn a_recorded_trial_counts_its_plays_as_its_report_and_its_play_becomes_a_draft(
 
 #[test]
 fn what_is_no_recording_is_refused_with_the_file_and_the_remedy() {
-    let at = scratch("garbage");
+    let at = names_in("garbage");
     recorded(&at("m"), "3");
     let trace = fs::read(at("m.trace")).expect("a trace");
     let files: [(&str, Vec<u8>, &str); 8] = [

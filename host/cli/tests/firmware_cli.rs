@@ -1,14 +1,17 @@
 //! `firmware_cli`: tests of `onetwo firmware` without a target compiler and without a probe
 //! (docs/case-format.md §5).
 
+mod verb;
+
 use std::fs;
-use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use protocol::frame::TeamKey;
 use protocol::provision::read;
 use protocol::{RobotId, TeamId};
 use rules::League;
+
+use verb::names_in;
 
 fn onetwo(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_onetwo"))
@@ -19,32 +22,10 @@ fn onetwo(arguments: &[&str]) -> Output {
         .expect("the program starts")
 }
 
-/// A directory of this test's own; removed with this value.
-struct Directory(PathBuf);
-
-impl Directory {
-    fn new(name: &str) -> Self {
-        let directory = std::env::temp_dir().join(format!("onetwo-firmware-{name}-{}", std::process::id()));
-        fs::create_dir_all(&directory).expect("a temporary folder");
-        Self(directory)
-    }
-
-    fn at(&self, file: &str) -> String {
-        self.0.join(file).display().to_string()
-    }
-}
-
-impl Drop for Directory {
-    fn drop(&mut self) {
-        // A temporary directory that remains is not an error.
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 #[test]
 fn the_page_that_is_written_is_the_one_a_robot_reads_and_its_owner_alone_may() {
-    let directory = Directory::new("page");
-    let (key, page) = (directory.at("key"), directory.at("robot.page"));
+    let at = names_in("page");
+    let (key, page) = (at("key"), at("robot.page"));
     fs::write(&key, "000102030405060708090a0b0c0d0e0f\n").expect("a file");
     let description =
         ["firmware", "provision", "--robot", "5", "--team", "2", "--key-file", &key, "--out", &page];
@@ -81,8 +62,8 @@ fn the_page_that_is_written_is_the_one_a_robot_reads_and_its_owner_alone_may() {
 
 #[test]
 fn what_no_robot_could_use_is_refused_with_a_hint() {
-    let directory = Directory::new("refused");
-    let (key, zeros, page) = (directory.at("key"), directory.at("zeros"), directory.at("robot.page"));
+    let at = names_in("refused");
+    let (key, zeros, page) = (at("key"), at("zeros"), at("robot.page"));
     fs::write(&key, "0123").expect("a file");
     fs::write(&zeros, "0".repeat(32)).expect("a file");
     for (robot, key, description) in

@@ -4,10 +4,11 @@
 //! Times: s and ms.
 #![cfg(target_os = "linux")]
 
-use std::io::{BufRead, BufReader};
+mod running;
+mod verb;
+
 use std::net::{SocketAddr, UdpSocket};
 use std::os::fd::AsRawFd;
-use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex};
@@ -26,8 +27,9 @@ use ssl::Message;
 use ssl::referee::{Command as Wire, Referee, TeamInfo};
 use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, WrapperPacket};
 
-/// Generous: a loaded machine is no failure.
-const PATIENCE: Duration = Duration::from_mins(1);
+use running::{PATIENCE, Running};
+use verb::{scratch, text};
+
 /// Longest median latency of HALT under a flood in the soak; 1.2 to 9.3 s before queues were bounded.
 const HALT_MAX: Duration = Duration::from_millis(500);
 /// Frames of the host to its robots that may come between the referee's HALT and the first HALT on the radio,
@@ -52,9 +54,7 @@ fn eventually(what: &str, holds: impl Fn() -> bool) {
 
 /// `onetwo control` with its referee, vision and base station simulated by the test.
 struct Field {
-    process: Child,
-    lines: Receiver<String>,
-    output: Vec<String>,
+    control: Running,
     vision: SocketAddr,
     referee: SocketAddr,
 }
@@ -71,57 +71,32 @@ fn free() -> SocketAddr {
 impl Field {
     fn start(robots: &str, more: &[&str]) -> Self {
         let (vision, referee) = (free(), free());
-        let name = format!("onetwo-halt-{}-{}.key", std::process::id(), vision.port());
-        let key = std::env::temp_dir().join(name);
+        let key = scratch(&format!("{}.key", vision.port()));
         std::fs::write(&key, "5a".repeat(16)).expect("a key file");
-        let mut process = Command::new(env!("CARGO_BIN_EXE_onetwo"))
-            .args(["control", "--name", "T", "--colour", "blue", "--headless", "--duration", "120"])
-            .args(["--robots", robots, "--vision", &vision.to_string(), "--referee", &referee.to_string()])
-            .args(["--tracker", &free().to_string(), "--key-file"])
-            .arg(key)
-            .args(more)
-            .stderr(Stdio::piped())
-            .stdout(Stdio::null())
-            .spawn()
-            .expect("the program starts");
-        let arguments = process.stderr.take().expect("a pipe");
-        let (send, lines) = channel();
-        thread::spawn(move || {
-            for line in BufReader::new(arguments).lines().map_while(Result::ok) {
-                let _ = send.send(line);
-            }
-        });
-        Self { process, lines, output: Vec::new(), vision, referee }
+        let own = ["control", "--name", "T", "--colour", "blue", "--headless", "--duration", "120"];
+        let addresses = [vision, referee, free()].map(|address| address.to_string());
+        let [to_vision, to_referee, tracker] = &addresses;
+        let net = ["--robots", robots, "--vision", to_vision, "--referee", to_referee, "--tracker", tracker];
+        let control = Running::start(&[&own[..], &net, &["--key-file", text(&key)], more].concat());
+        Self { control, vision, referee }
     }
 
-    /// Waits for a line that contains all of `arguments`.
-    fn wait_for_line(&mut self, arguments: &[&str]) -> String {
-        let until = Instant::now() + PATIENCE;
+    /// Waits for a line that contains all of `parts`.
+    fn wait_for_line(&mut self, parts: &[&str]) -> String {
         loop {
-            match self.lines.recv_timeout(until.saturating_duration_since(Instant::now())) {
-                Ok(line) => {
-                    self.output.push(line.clone());
-                    if arguments.iter().all(|part| line.contains(part)) {
-                        return line;
-                    }
-                }
-                Err(error) => panic!("{arguments:?} was not printed ({error}); printed: {:#?}", self.output),
+            let (_, line) = self.control.wait_for(parts[0]);
+            if parts.iter().all(|part| line.contains(part)) {
+                return line;
             }
         }
     }
 
     /// Resident memory, bytes.
     fn memory(&self) -> u64 {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.process.id())).expect("it runs");
+        let status =
+            std::fs::read_to_string(format!("/proc/{}/status", self.control.process.id())).expect("it runs");
         let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("its memory");
         line.trim().trim_end_matches(" kB").parse::<u64>().expect("a number") * 1024
-    }
-}
-
-impl Drop for Field {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
     }
 }
 

@@ -3,6 +3,7 @@
 
 #[path = "page_browser/program.rs"]
 mod program;
+mod running;
 
 use std::net::TcpStream;
 use std::process::Command;

@@ -11,6 +11,7 @@
 //! plays longer. Needs QEMU and a compiler for the target.
 
 mod running;
+mod verb;
 
 use std::fs;
 use std::net::UdpSocket;
@@ -28,6 +29,7 @@ use protocol::robot_io::ActuatorFrame;
 use protocol::{RobotId, TeamId};
 use rules::{Colour, League};
 use running::{PATIENCE, Running, free, socket};
+use verb::{directory, done};
 use virtual_robot::replay;
 
 /// Length of the match by the slowest robot's clock, s, where the environment names none: kick-off and the
@@ -46,10 +48,10 @@ fn six_images_on_udp_play_a_match_and_decide_as_native_brains_do() {
     keeps_to_its_size(&image);
     let seconds = std::env::var("ONETWO_MATCH_SECONDS").ok().and_then(|text| text.parse().ok());
     let seconds: f64 = seconds.unwrap_or(SECONDS);
-    let directory = Directory::new();
-    play(&directory.0, seconds);
+    let directory = directory("match");
+    play(&directory, seconds);
     for robot in (0..ROBOTS).filter_map(RobotId::new) {
-        let journal = fs::read(directory.0.join(format!("robot{robot}.journal"))).expect("a journal");
+        let journal = fs::read(directory.join(format!("robot{robot}.journal"))).expect("a journal");
         let config = BrainConfig::hosted(robot, TeamId::of(Colour::Blue), League::DivisionB);
         let replayed = replay(&journal, &config, case_library::division_b(), &KEY.of_robot(robot))
             .unwrap_or_else(|error| panic!("robot {robot}: {error}"));
@@ -162,12 +164,8 @@ fn play(directory: &Path, seconds: f64) {
 fn provisioned(directory: &Path, robot: u8, key_file: &str) -> String {
     let page = directory.join(format!("robot{robot}.page")).display().to_string();
     let (number, team) = (robot.to_string(), TeamId::of(Colour::Blue).0.to_string());
-    let out = Command::new(env!("CARGO_BIN_EXE_onetwo"))
-        .args(["firmware", "provision", "--robot", &number, "--team", &team])
-        .args(["--key-file", key_file, "--out", &page])
-        .output()
-        .expect("the program starts");
-    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let who = ["firmware", "provision", "--robot", &number, "--team", &team];
+    done(&[&who[..], &["--key-file", key_file, "--out", &page]].concat());
     page
 }
 
@@ -194,23 +192,5 @@ impl Copied {
             }
         });
         Self { address, copies }
-    }
-}
-
-/// A directory of this test's own; removed with this value.
-struct Directory(PathBuf);
-
-impl Directory {
-    fn new() -> Self {
-        let directory = std::env::temp_dir().join(format!("onetwo-qemu-udp-{}", std::process::id()));
-        fs::create_dir_all(&directory).expect("a temporary directory");
-        Self(directory)
-    }
-}
-
-impl Drop for Directory {
-    fn drop(&mut self) {
-        // A temporary directory that remains is not an error.
-        let _ = fs::remove_dir_all(&self.0);
     }
 }

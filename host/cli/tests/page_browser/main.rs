@@ -11,6 +11,8 @@ mod evidence;
 mod health;
 mod look;
 mod program;
+#[path = "../running/mod.rs"]
+mod running;
 mod testday;
 mod touch;
 mod tune;

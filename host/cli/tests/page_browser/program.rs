@@ -1,18 +1,17 @@
 //! `program`: the built program with its page: started, connected, and ended with the test.
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::cell::RefCell;
+use std::io::{Read, Write};
 use std::net::TcpStream;
-use std::process::{Child, Command, Stdio};
-use std::sync::mpsc::{Receiver, channel};
-use std::thread;
-use std::time::Duration;
+use std::process::{Command, Stdio};
+
+use crate::running::Running;
 
 /// A verb that serves a page.
 pub(crate) struct Program {
-    child: Child,
+    running: RefCell<Running>,
     address: String,
     token: Option<String>,
-    lines: Receiver<String>,
 }
 
 impl Program {
@@ -24,38 +23,14 @@ impl Program {
 
     /// Starts it and waits for the page's address.
     pub(crate) fn start(arguments: &[&str]) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_onetwo"))
-            .args(arguments)
-            // The host's epoch is kept there, not in the home of the user that runs the tests.
-            .env("XDG_STATE_HOME", env!("CARGO_TARGET_TMPDIR"))
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
-        let mut reported = Vec::new();
-        let address = loop {
-            match lines.next() {
-                Some(Ok(line)) => match line.strip_prefix("page     http://") {
-                    Some(address) => break address.to_owned(),
-                    None => reported.push(line),
-                },
-                _ => panic!("no page: {reported:?}"),
-            }
-        };
+        let mut running = Running::start(arguments);
+        let (_, line) = running.wait_for("page     http://");
+        let address = line.trim_start_matches("page     http://");
         let (address, token) = match address.split_once("/?token=") {
-            Some((address, token)) => (address.to_owned(), Some(token.to_owned())),
+            Some((address, token)) => (address, Some(token.to_owned())),
             None => (address, None),
         };
-        // A full pipe would block it.
-        let (send, later) = channel();
-        thread::spawn(move || {
-            for line in lines.map_while(Result::ok) {
-                let _ = send.send(line);
-            }
-        });
-        Self { child, address, token, lines: later }
+        Self { address: address.to_owned(), token, running: RefCell::new(running) }
     }
 
     pub(crate) fn address(&self) -> &str {
@@ -71,12 +46,7 @@ impl Program {
     /// Waits for a line on stderr that contains `arguments`.
     #[allow(dead_code, reason = "one of the two tests that share this file listens")]
     pub(crate) fn wait_for(&self, arguments: &str) {
-        while let Ok(line) = self.lines.recv_timeout(Duration::from_secs(40)) {
-            if line.contains(arguments) {
-                return;
-            }
-        }
-        panic!("`{arguments}` was not printed");
+        self.running.borrow_mut().wait_for(arguments);
     }
 
     /// The page's whole answer to a request for `path`, with its head.
@@ -92,13 +62,6 @@ impl Program {
     #[allow(dead_code, reason = "the browser's tests ask for it")]
     pub(crate) fn url(&self, more: &str) -> String {
         format!("http://{}/{more}", self.address)
-    }
-}
-
-impl Drop for Program {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }
 

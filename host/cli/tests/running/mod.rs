@@ -14,7 +14,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// Generous: a loaded machine is no failure.
-pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
+pub(crate) const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A port of this machine's own, waited at for [`PATIENCE`] at most.
 pub(crate) fn socket() -> UdpSocket {
@@ -24,6 +24,7 @@ pub(crate) fn socket() -> UdpSocket {
 }
 
 /// The address of a port that is free at the moment.
+#[allow(dead_code, reason = "each test program takes what it needs of it")]
 pub(crate) fn free() -> String {
     socket().local_addr().expect("an address").to_string()
 }
@@ -42,6 +43,7 @@ impl Running {
             .args(arguments)
             // The host's epoch is kept there, not in the home of the user that runs the tests.
             .env("XDG_STATE_HOME", env!("CARGO_TARGET_TMPDIR"))
+            .stdin(Stdio::null())
             .stderr(Stdio::piped())
             .stdout(Stdio::null())
             .spawn()

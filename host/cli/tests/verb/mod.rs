@@ -55,6 +55,12 @@ pub(crate) fn directory(test: &str) -> PathBuf {
     directory
 }
 
+/// Names in an empty directory of a test's own.
+pub(crate) fn names_in(test: &str) -> impl Fn(&str) -> String {
+    let directory = directory(test);
+    move |name| directory.join(name).display().to_string()
+}
+
 pub(crate) fn text(path: &Path) -> &str {
     path.to_str().expect("a name in UTF-8")
 }
