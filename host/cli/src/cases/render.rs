@@ -4,8 +4,8 @@ use std::io::{Read, stdin};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use arena::cases::{LibraryHandle, counted, problem};
-use casebase::{CaseVerdict, Match, Problem, Symmetry, rank_order};
+use arena::cases::{LibraryHandle, candidate, counted, problem};
+use casebase::{Problem, Symmetry, rank_order};
 use clap::{Args, ValueEnum};
 use figures::{CasePicture, Overlay, Theme, case_picture, sheet};
 
@@ -149,13 +149,6 @@ fn every(args: &RenderArgs, library_handle: &LibraryHandle) -> Result<ExitCode, 
         picture::write(file, &sheet(&title, &pictures))?;
     }
     Ok(ExitCode::SUCCESS)
-}
-
-fn candidate(verdict: &CaseVerdict) -> Option<&Match> {
-    match verdict {
-        CaseVerdict::Candidate(found) => Some(found),
-        _ => None,
-    }
 }
 
 /// Reads the problem from the argument or from the file that it names.
