@@ -37,9 +37,8 @@ const FRAME_AGE_MAX: Duration = Duration::millis(300);
 #[cfg(test)]
 mod tests;
 
-use std::fmt;
-
 use protocol::{Duration, Instant};
+use thiserror::Error;
 
 use crate::Host;
 use crate::referee::Warning;
@@ -57,31 +56,45 @@ pub(crate) use team::{failed_parts, other_image};
 pub use vision::CameraFault;
 
 /// Something that does not fit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum Fault {
     /// More robots than the league allows.
+    #[error("{0}")]
     Robots(TooManyRobots),
     /// Vision sends a field that is not the league's.
+    #[error("{0}")]
     Field(OtherField),
     /// The teams stand at each other's goals.
+    #[error("{0}")]
     Side(WrongSide),
     /// Another host commands, or tries to command, our robots.
+    #[error("{0}")]
     SecondHost(SecondHost),
     /// No camera frames come on vision's port.
+    #[error("{0}")]
     VisionPort(VisionPort),
     /// Two programs send vision of one camera.
+    #[error("{0}")]
     SecondVision(SecondVision),
     /// A camera's clock, delay or rate.
+    #[error("{0}")]
     Camera(CameraFault),
     /// Our team by referee, vision and radio.
+    #[error("{0}")]
     Team(TeamFault),
     /// The strategy in another program.
+    #[error("{0}")]
     Strategy(StrategyFault),
     /// The referee's sources.
+    #[error("{0}")]
     Referee(Warning),
     /// The host, vision or the radio has stalled.
+    #[error("{0}")]
     Stall(Stall),
     /// Datagrams came faster than they can be used.
+    #[error(
+        "{dropped} {what} came faster than they can be used, the oldest were dropped; does another program flood the port?"
+    )]
     Flood {
         /// What was dropped.
         what: &'static str,
@@ -89,8 +102,10 @@ pub enum Fault {
         dropped: u64,
     },
     /// The line to the base station is too slow; the text has the rate that it needs.
+    #[error("{0}")]
     SlowLine(String),
     /// A source that was never received; the text says how it is received.
+    #[error("{0}")]
     Missing(String),
 }
 
@@ -170,29 +185,6 @@ impl Fault {
             Self::Referee(warning) => warning.is_urgent(),
             Self::VisionPort(_) | Self::Missing(_) => false,
             _ => true,
-        }
-    }
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Robots(found) => found.fmt(f),
-            Self::Field(found) => found.fmt(f),
-            Self::Side(found) => found.fmt(f),
-            Self::SecondHost(found) => found.fmt(f),
-            Self::VisionPort(found) => found.fmt(f),
-            Self::SecondVision(found) => found.fmt(f),
-            Self::Camera(found) => found.fmt(f),
-            Self::Team(found) => found.fmt(f),
-            Self::Strategy(found) => found.fmt(f),
-            Self::Referee(found) => found.fmt(f),
-            Self::Stall(found) => found.fmt(f),
-            Self::Flood { what, dropped } => write!(
-                f,
-                "{dropped} {what} came faster than they can be used, the oldest were dropped; does another program flood the port?"
-            ),
-            Self::SlowLine(text) | Self::Missing(text) => f.write_str(text),
         }
     }
 }

@@ -1,8 +1,7 @@
 //! `port`: check that camera frames come on vision's port.
 
-use std::fmt;
-
 use protocol::{Duration, Instant};
+use thiserror::Error;
 
 use crate::Host;
 
@@ -14,37 +13,29 @@ const FOREIGN_SILENCE_MAX: Duration = Duration::millis(2_000);
 const FOREIGN_MIN: u64 = 3;
 
 /// Input on vision's port without camera frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum VisionPort {
     /// No packet at all since the start.
+    #[error(
+        "waiting for vision: no packet has come; is SSL-Vision or a simulator running and sending there? Cameras send to \
+         224.5.23.2:10006, simulators to 224.5.23.2:10020 (--vision, --interface); `onetwo simulate` is one"
+    )]
     Nothing,
     /// Packets that hold neither camera frame nor field: another program's port.
+    #[error(
+        "waiting for vision: {packets} packets came on its port and none holds a camera frame or a field; another program sends \
+         there. Cameras send to 224.5.23.2:10006, simulators to 224.5.23.2:10020 (--vision)"
+    )]
     Foreign {
         /// Number since the last camera frame.
         packets: u64,
     },
     /// The field's geometry, but no camera frame.
+    #[error(
+        "waiting for vision: the field's geometry comes, but no camera frame; are the cameras on, and is capture started in \
+         SSL-Vision?"
+    )]
     NoFrames,
-}
-
-impl fmt::Display for VisionPort {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Nothing => f.write_str(
-                "waiting for vision: no packet has come; is SSL-Vision or a simulator running and sending there? Cameras send to \
-                 224.5.23.2:10006, simulators to 224.5.23.2:10020 (--vision, --interface); `onetwo simulate` is one",
-            ),
-            Self::Foreign { packets } => write!(
-                f,
-                "waiting for vision: {packets} packets came on its port and none holds a camera frame or a field; another program sends \
-                 there. Cameras send to 224.5.23.2:10006, simulators to 224.5.23.2:10020 (--vision)"
-            ),
-            Self::NoFrames => f.write_str(
-                "waiting for vision: the field's geometry comes, but no camera frame; are the cameras on, and is capture started in \
-                 SSL-Vision?",
-            ),
-        }
-    }
 }
 
 /// Packets of vision's port, as the host counted them.

@@ -1,22 +1,26 @@
 //! `second_host`: detection of a second host of our team number on our robots' radio. Evidence: its frames
 //! received by us, robots that followed us and now name another host, and frames that our robots refuse.
 
-use std::fmt;
-
 use protocol::{Instant, RobotId};
+use thiserror::Error;
 
 use crate::Host;
 use crate::radio::{RadioWarning, RefusalReason};
 
+const REMEDY: &str =
+    "two `onetwo control` of one colour are running: end one of them (or give it another --colour and key)";
+
 /// Another host of our team number, with its evidence.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum SecondHost {
     /// A host of this boot epoch, whose frames reach us.
+    #[error("frames of a second host of our team are received (epoch {epoch}): {REMEDY}")]
     Received {
         /// Boot epoch of the second host.
         epoch: u32,
     },
     /// A robot that followed us follows it now.
+    #[error("robot {robot} has left us for a second host of our team (epoch {epoch}): {REMEDY}")]
     TookOver {
         /// The robot that changed its host.
         robot: RobotId,
@@ -24,30 +28,11 @@ pub enum SecondHost {
         epoch: u32,
     },
     /// A host that started before us: robots that follow us refuse its frames.
+    #[error("robot {robot} refuses frames of a second host of our team, which started earlier: {REMEDY}")]
     Refused {
         /// The lowest number of them.
         robot: RobotId,
     },
-}
-
-impl fmt::Display for SecondHost {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let remedy = "two `onetwo control` of one colour are running: end one of them (or give it another --colour and key)";
-        match self {
-            Self::Received { epoch } => {
-                write!(f, "frames of a second host of our team are received (epoch {epoch}): {remedy}")
-            }
-            Self::TookOver { robot, epoch } => {
-                write!(f, "robot {robot} has left us for a second host of our team (epoch {epoch}): {remedy}")
-            }
-            Self::Refused { robot } => {
-                write!(
-                    f,
-                    "robot {robot} refuses frames of a second host of our team, which started earlier: {remedy}"
-                )
-            }
-        }
-    }
 }
 
 /// The strongest evidence there is now.

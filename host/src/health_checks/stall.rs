@@ -2,9 +2,8 @@
 //! stall of the others: a computer that does not run receives nothing, and without vision the host sends
 //! nothing after half a second. So they are checked in this order.
 
-use std::fmt;
-
 use protocol::{Duration, Instant};
+use thiserror::Error;
 
 use crate::Host;
 use crate::radio::Radio;
@@ -32,24 +31,44 @@ const SENT_FOR_MIN: Duration = Duration::millis(DOWN_STALL.0 / 1_000 + TELEMETRY
 const REPORTED_FOR: Duration = Duration::millis(3_000);
 
 /// A stall, and its duration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Stall {
     /// This computer did not run the host.
+    #[error(
+        "host stall: this computer did not run the host for {:.1} s, robots brake after 0.1 s; close other programs, and switch \
+         power saving and sleep off",
+        lasted.as_secs_f32()
+    )]
     Host {
         /// Duration of the stall, now over.
         lasted: Duration,
     },
     /// No camera frame comes though the computer runs.
+    #[error(
+        "vision stall: no camera frame for {:.1} s while this computer and the radio go on, robots brake after 0.6 s; look at \
+         SSL-Vision, its cameras and the network cable",
+        since.as_secs_f32()
+    )]
     Vision {
         /// Since the last one, or since the computer runs again.
         since: Duration,
     },
     /// No robot is received, though at least one was, the computer runs and vision comes.
+    #[error(
+        "radio stall: no robot is received for {:.1} s while this computer and vision go on; look at the base station, its cable \
+         and power, and the channel",
+        since.as_secs_f32()
+    )]
     RadioUp {
         /// Since the last frame of any of them.
         since: Duration,
     },
     /// Robots are received and none receives us, though snapshots go out.
+    #[error(
+        "radio stall: robots are received but none receives us for {:.1} s, they brake after 0.1 s; look at the base station's \
+         sender, and for another sender on the channel",
+        since.as_secs_f32()
+    )]
     RadioDown {
         /// The shortest time for which one of them received nothing.
         since: Duration,
@@ -63,38 +82,6 @@ impl Stall {
             Self::Host { .. } => "host",
             Self::Vision { .. } => "vision",
             Self::RadioUp { .. } | Self::RadioDown { .. } => "radio",
-        }
-    }
-}
-
-impl fmt::Display for Stall {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let s = |time: &Duration| time.as_secs_f32();
-        match self {
-            Self::Host { lasted } => write!(
-                f,
-                "host stall: this computer did not run the host for {:.1} s, robots brake after 0.1 s; close other programs, and switch \
-                 power saving and sleep off",
-                s(lasted)
-            ),
-            Self::Vision { since } => write!(
-                f,
-                "vision stall: no camera frame for {:.1} s while this computer and the radio go on, robots brake after 0.6 s; look at \
-                 SSL-Vision, its cameras and the network cable",
-                s(since)
-            ),
-            Self::RadioUp { since } => write!(
-                f,
-                "radio stall: no robot is received for {:.1} s while this computer and vision go on; look at the base station, its cable \
-                 and power, and the channel",
-                s(since)
-            ),
-            Self::RadioDown { since } => write!(
-                f,
-                "radio stall: robots are received but none receives us for {:.1} s, they brake after 0.1 s; look at the base station's \
-                 sender, and for another sender on the channel",
-                s(since)
-            ),
         }
     }
 }

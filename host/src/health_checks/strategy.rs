@@ -1,8 +1,7 @@
 //! `strategy`: check of a strategy in another program: whether it answers, and whether its answers are used.
 
-use std::fmt;
-
 use protocol::{Duration, Instant};
+use thiserror::Error;
 
 use crate::Host;
 
@@ -10,9 +9,13 @@ use crate::Host;
 const ANSWERS_WITHIN: Duration = Duration::millis(1_500);
 
 /// A strategy that does not play.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum StrategyFault {
     /// Its answers are refused.
+    #[error(
+        "{answers} answers of the strategy are refused, the last one because {reason}: robots follow the coach or stand; \
+         compare it with docs/strategy-protocol.md"
+    )]
     Refused {
         /// Number of refused answers.
         answers: u64,
@@ -20,31 +23,17 @@ pub enum StrategyFault {
         reason: String,
     },
     /// No answer came though it was asked.
+    #[error(
+        "no answer {}came from the strategy for {:.0} s: robots stand in open play; does it run, read standard input line by \
+         line, and flush its output?",
+        if *ever { "" } else { "ever " }, since.as_secs_f32()
+    )]
     Silent {
         /// Since the last answer, or since it was asked first.
         since: Duration,
         /// Whether it ever answered.
         ever: bool,
     },
-}
-
-impl fmt::Display for StrategyFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Refused { answers, reason } => write!(
-                f,
-                "{answers} answers of the strategy are refused, the last one because {reason}: robots follow the coach or stand; \
-                 compare it with docs/strategy-protocol.md"
-            ),
-            Self::Silent { since, ever } => write!(
-                f,
-                "no answer {}came from the strategy for {:.0} s: robots stand in open play; does it run, read standard input line by \
-                 line, and flush its output?",
-                if *ever { "" } else { "ever " },
-                since.as_secs_f32()
-            ),
-        }
-    }
 }
 
 /// Answers as they were counted.

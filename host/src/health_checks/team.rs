@@ -1,13 +1,13 @@
 //! `team`: checks of our team by referee, vision and radio: name and colour, the keeper, the number of
 //! robots, the place of a placement, and robots that only radio or only vision knows.
 
-use std::fmt;
-
+use foreign::printable;
 use geometry::{Field, Point};
 use protocol::parts::PartsReport;
 use protocol::version::VersionReport;
 use protocol::{Duration, Instant, RobotId};
 use rules::{Colour, League, Phase};
+use thiserror::Error;
 
 use super::Lasting;
 use crate::Host;
@@ -18,9 +18,13 @@ const SEEN_WITHIN: Duration = Duration::millis(500);
 const APART_AFTER: Duration = Duration::millis(1_500);
 
 /// What does not fit between our team, the referee, vision and radio.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum TeamFault {
     /// The referee has our name at the other colour.
+    #[error(
+        "the game controller has {} as {}, and {} as {}, which we play: correct the teams there, or start with --colour {}",
+        printable(name), us.other().label(), printable(other), us.label(), us.other().label()
+    )]
     OtherColour {
         /// Our name.
         name: String,
@@ -30,11 +34,20 @@ pub enum TeamFault {
         other: String,
     },
     /// The keeper that the referee names is not on the field.
+    #[error(
+        "the referee names robot {keeper} our keeper, and no camera sees it on the field; put it on, or name another \
+         (--keeper, the game controller)"
+    )]
     NoKeeper {
         /// Number of the keeper.
         keeper: RobotId,
     },
     /// The referee allows more robots than the league does.
+    #[error(
+        "the referee allows {allowed} robots, {} has {of_league}: start with --league division-a, or set the division in the \
+         game controller",
+        league.name()
+    )]
     Division {
         /// Robots that the referee allows.
         allowed: u32,
@@ -44,20 +57,37 @@ pub enum TeamFault {
         of_league: u32,
     },
     /// A placement that no robot can do.
+    #[error("{}: robots keep off the ball; {}", unplaceable(*place)[0], unplaceable(*place)[1])]
     Placement {
         /// The place, m; none: the referee has sent none.
         place: Option<Point<Field>>,
     },
     /// A command of the referee that this program does not know.
+    #[error(
+        "the referee sends command {number}, which this program does not know: robots halt; is the game controller newer than \
+         this program?"
+    )]
     Command {
         /// Number of the command.
         number: i32,
     },
     /// A robot that radio receives and no camera sees.
+    #[error(
+        "robot {0} is received by radio, and no camera sees it: it stands; look at its pattern and at the camera's view, or \
+         switch it off"
+    )]
     Unseen(RobotId),
     /// A robot that cameras see and radio does not receive.
+    #[error(
+        "robot {0} is seen by a camera, and radio does not receive it: it is not led; is it switched on, with our key and \
+         its number?"
+    )]
     Unheard(RobotId),
     /// The only robot that cameras alone know, and the radio number that alone radio receives.
+    #[error(
+        "cameras see robot {shell}, which radio does not receive, and radio receives number {radio}, which no camera sees, \
+         perhaps the same robot: set numbers.radio of robot {shell} to {radio} (page, Parameters, or [[numbers]] in team.toml)"
+    )]
     OtherNumber {
         /// Number on the shell.
         shell: RobotId,
@@ -65,6 +95,11 @@ pub enum TeamFault {
         radio: RobotId,
     },
     /// A robot that runs something else than its host expects.
+    #[error(
+        "robot {robot} runs another {} than this host expects, {runs} in place of {expected}: flash it with `onetwo \
+         firmware flash --board BOARD`, of the sources that this program was built from",
+        runs.differences(expected).collect::<Vec<_>>().join(" and ")
+    )]
     OtherImage {
         /// Number on the shell.
         robot: RobotId,
@@ -74,6 +109,10 @@ pub enum TeamFault {
         expected: VersionReport,
     },
     /// A robot that suspects parts of itself, or goes on without them.
+    #[error(
+        "robot {robot} reports: {parts}; it goes on without it where it can, slowly with three wheels, and stops with less: \
+         take it off the field, and look at that part, its plugs, cable and driver (docs/boards.md)"
+    )]
     FailedParts {
         /// Number on the shell.
         robot: RobotId,
@@ -120,76 +159,17 @@ impl TeamFault {
     }
 }
 
-impl fmt::Display for TeamFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let printable = foreign::printable;
-        match self {
-            Self::OtherColour { name, us, other } => write!(
-                f,
-                "the game controller has {} as {}, and {} as {}, which we play: correct the teams there, or start with --colour {}",
-                printable(name),
-                us.other().label(),
-                printable(other),
-                us.label(),
-                us.other().label()
-            ),
-            Self::NoKeeper { keeper } => write!(
-                f,
-                "the referee names robot {keeper} our keeper, and no camera sees it on the field; put it on, or name another \
-                 (--keeper, the game controller)"
-            ),
-            Self::Division { allowed, league, of_league } => write!(
-                f,
-                "the referee allows {allowed} robots, {} has {of_league}: start with --league division-a, or set the division in the \
-                 game controller",
-                league.name()
-            ),
-            Self::Placement { place: None } => f.write_str(
-                "a ball placement is commanded without a place: robots keep off the ball; give a place in the game controller",
-            ),
-            Self::Placement { place: Some(place) } => write!(
-                f,
-                "the ball is to be placed at ({:.2}, {:.2}) m, which no robot reaches, beyond the walls: robots keep off the ball; \
-                 place it by hand, or correct the place in the game controller",
-                place.x(),
-                place.y()
-            ),
-            Self::Command { number } => write!(
-                f,
-                "the referee sends command {number}, which this program does not know: robots halt; is the game controller newer than \
-                 this program?"
-            ),
-            Self::Unseen(robot) => write!(
-                f,
-                "robot {robot} is received by radio, and no camera sees it: it stands; look at its pattern and at the camera's view, or \
-                 switch it off"
-            ),
-            Self::Unheard(robot) => write!(
-                f,
-                "robot {robot} is seen by a camera, and radio does not receive it: it is not led; is it switched on, with our key and \
-                 its number?"
-            ),
-            Self::OtherImage { robot, runs, expected } => {
-                let parts: Vec<_> = runs.differences(expected).collect();
-                write!(
-                    f,
-                    "robot {robot} runs another {} than this host expects, {runs} in place of {expected}: flash it with `onetwo \
-                     firmware flash --board BOARD`, of the sources that this program was built from",
-                    parts.join(" and ")
-                )
-            }
-            Self::FailedParts { robot, parts } => write!(
-                f,
-                "robot {robot} reports: {parts}; it goes on without it where it can, slowly with three wheels, and stops with less: \
-                 take it off the field, and look at that part, its plugs, cable and driver (docs/boards.md)"
-            ),
-            Self::OtherNumber { shell, radio } => write!(
-                f,
-                "cameras see robot {shell}, which radio does not receive, and radio receives number {radio}, which no camera sees, \
-                 perhaps the same robot: set numbers.radio of robot {shell} to {radio} (page, Parameters, or [[numbers]] in team.toml)"
-            ),
-        }
-    }
+/// What a placement lacks, and its remedy.
+fn unplaceable(place: Option<Point<Field>>) -> [String; 2] {
+    let Some(place) = place else {
+        return ["a ball placement is commanded without a place", "give a place in the game controller"]
+            .map(str::to_owned);
+    };
+    let (x, y) = (place.x(), place.y());
+    [
+        format!("the ball is to be placed at ({x:.2}, {y:.2}) m, which no robot reaches, beyond the walls"),
+        "place it by hand, or correct the place in the game controller".to_owned(),
+    ]
 }
 
 /// State of the checks.

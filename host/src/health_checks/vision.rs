@@ -3,6 +3,7 @@
 use std::fmt;
 
 use protocol::{Duration, Instant};
+use thiserror::Error;
 
 use super::FAULT_LASTS_MIN;
 use crate::Host;
@@ -28,9 +29,14 @@ impl fmt::Display for SecondVision {
 }
 
 /// What is wrong with a camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum CameraFault {
     /// Its clock is not the others'.
+    #[error(
+        "the clock of camera {camera} is {} ms {} the others': it is taken out; set the clocks of the vision computers \
+         by NTP",
+        ahead_ms.abs(), if *ahead_ms < 0 { "behind" } else { "ahead of" }
+    )]
     Clock {
         /// Number of the camera.
         camera: u32,
@@ -38,6 +44,9 @@ pub enum CameraFault {
         ahead_ms: i64,
     },
     /// Its packets come later than the others'.
+    #[error(
+        "frames of camera {camera} come {by_ms} ms later than the others': they count late; look at its computer and its network"
+    )]
     Late {
         /// Number of the camera.
         camera: u32,
@@ -45,6 +54,10 @@ pub enum CameraFault {
         by_ms: i64,
     },
     /// Its frames cannot be used.
+    #[error(
+        "frames of camera {camera} are not used, they are {by_ms} ms off the others': its part of the field is not seen; is its \
+         clock steady, and are two programs sending it?"
+    )]
     Unused {
         /// Number of the camera.
         camera: u32,
@@ -52,6 +65,10 @@ pub enum CameraFault {
         by_ms: i64,
     },
     /// It sends too few frames.
+    #[error(
+        "camera {camera} sends {rate:.1} images a second, too slow to track robots, which need 5; is its computer overloaded, or \
+         the exposure too long?"
+    )]
     Slow {
         /// Number of the camera.
         camera: u32,
@@ -68,36 +85,6 @@ impl CameraFault {
             Self::Late { camera, .. } => format!("delay of camera {camera}"),
             Self::Unused { camera, .. } => format!("frames of camera {camera}"),
             Self::Slow { camera, .. } => format!("rate of camera {camera}"),
-        }
-    }
-}
-
-impl fmt::Display for CameraFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Clock { camera, ahead_ms } => {
-                let side = if *ahead_ms < 0 { "behind" } else { "ahead of" };
-                write!(
-                    f,
-                    "the clock of camera {camera} is {} ms {side} the others': it is taken out; set the clocks of the vision computers \
-                     by NTP",
-                    ahead_ms.abs()
-                )
-            }
-            Self::Late { camera, by_ms } => write!(
-                f,
-                "frames of camera {camera} come {by_ms} ms later than the others': they count late; look at its computer and its network"
-            ),
-            Self::Unused { camera, by_ms } => write!(
-                f,
-                "frames of camera {camera} are not used, they are {by_ms} ms off the others': its part of the field is not seen; is its \
-                 clock steady, and are two programs sending it?"
-            ),
-            Self::Slow { camera, rate } => write!(
-                f,
-                "camera {camera} sends {rate:.1} images a second, too slow to track robots, which need 5; is its computer overloaded, or \
-                 the exposure too long?"
-            ),
         }
     }
 }

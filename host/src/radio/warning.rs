@@ -1,11 +1,10 @@
 //! `warning`: reports which robots refuse this host or are refused by it, and how to fix it. A matter is
 //! reported while it persists: five frames within two seconds. Times on the host's clock.
 
-use std::fmt;
-
 use protocol::frame::Refusal;
 use protocol::host::Telemetry;
 use protocol::{Duration, Instant, RobotId, TeamId};
+use thiserror::Error;
 
 /// Time after which a count restarts.
 const COUNT_WINDOW: Duration = Duration::millis(1_000);
@@ -19,19 +18,37 @@ const FRAMES_MANY: u32 = 5;
 const HANDSHAKE_TIME: Duration = Duration::millis(3_000);
 
 /// A cause that prevents communication between a robot and this host.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum RadioWarning {
     /// The robot follows a host with a later epoch, and refuses this one.
+    #[error(
+        "robot {0} refuses this host: a host with a later epoch ({1}) led it before; restart the robot or set \
+         this computer's clock"
+    )]
     LaterHost(RobotId, u32),
     /// The robot refuses frames for this reason.
+    #[error("robot {0} refuses frames {1}")]
     Refuses(RobotId, RefusalReason),
     /// Frames in that robot's name have a tag that is not its key's.
+    #[error(
+        "frames of robot {0} have a wrong tag: it holds another team's key, or is imitated; check --key-file, or write \
+         its page again (`onetwo firmware provision --robot {0}`)"
+    )]
     WrongKey(RobotId),
     /// Frames of another host of our team come in, with this epoch.
+    #[error(
+        "frames of another host of our team (epoch {0}) come in: end one of the two hosts, or give it a key and a --colour \
+         of its own"
+    )]
     OtherHost(u32),
     /// Frames of another team's number come in.
+    #[error(
+        "frames of team {} come in: a robot of the other team, or one of ours provisioned with its number (--team)",
+        .0.0
+    )]
     OtherTeam(TeamId),
     /// Frames of another version of the protocol come in.
+    #[error("frames of protocol version {0} come in: flash robots and host with the same release")]
     OtherVersion(u8),
 }
 
@@ -46,19 +63,27 @@ impl RadioWarning {
 }
 
 /// Why a robot refuses frames, as its telemetry counts them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum RefusalReason {
     /// Frames of another protocol version.
+    #[error("of another protocol version: flash robots and host with the same release")]
     Version,
     /// Frames of another team's number.
+    #[error("of another team's number: give each team its own channel")]
     Team,
     /// Frames of an earlier epoch of the host.
+    #[error("of an earlier host: end the other host")]
     Epoch,
     /// Their tags are not its key's.
+    #[error("with a wrong tag: another host with another key, or an attacker, sends on this channel")]
     Tag,
     /// Frames of a host or teammate that has not named its epoch.
+    #[error(
+        "of a sender it does not know: another host or robot of this team number, or recordings, are on this channel"
+    )]
     Unauthenticated,
     /// Frames more than 200 ms old.
+    #[error("that are over 200 ms old: the radio is too slow or overloaded, or frames are withheld")]
     Stale,
 }
 
@@ -74,61 +99,6 @@ impl RefusalReason {
             Self::Tag => Refusal::Tag.kind(),
             Self::Unauthenticated => Refusal::Unauthenticated { epoch: 0 }.kind(),
             Self::Stale => Refusal::Stale.kind(),
-        }
-    }
-}
-
-impl fmt::Display for RadioWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::LaterHost(robot, epoch) => write!(
-                f,
-                "robot {robot} refuses this host: a host with a later epoch ({epoch}) led it before; restart the robot or set \
-                 this computer's clock"
-            ),
-            Self::Refuses(robot, why) => {
-                let (what, remedy) = match why {
-                    RefusalReason::Version => {
-                        ("of another protocol version", "flash robots and host with the same release")
-                    }
-                    RefusalReason::Team => ("of another team's number", "give each team its own channel"),
-                    RefusalReason::Epoch => ("of an earlier host", "end the other host"),
-                    RefusalReason::Tag => (
-                        "with a wrong tag",
-                        "another host with another key, or an attacker, sends on this channel",
-                    ),
-                    RefusalReason::Unauthenticated => (
-                        "of a sender it does not know",
-                        "another host or robot of this team number, or recordings, are on this channel",
-                    ),
-                    RefusalReason::Stale => (
-                        "that are over 200 ms old",
-                        "the radio is too slow or overloaded, or frames are withheld",
-                    ),
-                };
-                write!(f, "robot {robot} refuses frames {what}: {remedy}")
-            }
-            Self::WrongKey(robot) => write!(
-                f,
-                "frames of robot {robot} have a wrong tag: it holds another team's key, or is imitated; check --key-file, or write \
-                 its page again (`onetwo firmware provision --robot {robot}`)"
-            ),
-            Self::OtherHost(epoch) => write!(
-                f,
-                "frames of another host of our team (epoch {epoch}) come in: end one of the two hosts, or give it a key and a --colour \
-                 of its own"
-            ),
-            Self::OtherTeam(team) => write!(
-                f,
-                "frames of team {} come in: a robot of the other team, or one of ours provisioned with its number (--team)",
-                team.0
-            ),
-            Self::OtherVersion(version) => {
-                write!(
-                    f,
-                    "frames of protocol version {version} come in: flash robots and host with the same release"
-                )
-            }
         }
     }
 }

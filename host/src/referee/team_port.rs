@@ -18,6 +18,7 @@ use ssl::controller::{
     TeamToController, Verification,
 };
 use ssl::stream::{FrameReader, MESSAGE_MAX, delimited};
+use thiserror::Error;
 
 use super::description::team_of;
 
@@ -72,28 +73,17 @@ pub enum TeamPortEvent {
 }
 
 /// Why a connection is given up.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Trouble {
     /// The connection was closed, or could not be opened; the requests that waited are kept.
+    #[error("the game controller's port for teams closed, or is not open")]
     Closed,
     /// No answer within [`REPLY_TIME`].
+    #[error("no answer from the game controller within {} s", REPLY_TIME.as_secs_f32())]
     NoAnswer,
     /// The bytes received are not the protocol of the port for teams.
+    #[error("this is not the game controller's port for teams (10008): {0}")]
     NotTheTeamPort(String),
-}
-
-impl std::fmt::Display for Trouble {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Closed => write!(f, "the game controller's port for teams closed, or is not open"),
-            Self::NoAnswer => {
-                write!(f, "no answer from the game controller within {} s", REPLY_TIME.as_secs_f32())
-            }
-            Self::NotTheTeamPort(why) => {
-                write!(f, "this is not the game controller's port for teams (10008): {why}")
-            }
-        }
-    }
 }
 
 /// State of a connection.

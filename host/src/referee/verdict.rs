@@ -1,10 +1,9 @@
 //! `verdict`: result of a referee's packet, with its evidence. Times: µs.
 
-use std::fmt;
-
 use protocol::Duration;
 use rules::state::{CommandVerdict, RefereeCommand};
 use serde::Serialize;
+use thiserror::Error;
 
 use super::identity::SourceKey;
 
@@ -67,27 +66,20 @@ pub enum RefereeVerdict {
 }
 
 /// Why a packet is not in order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Doubt {
     /// A stamp ahead of the packet's arrival.
+    #[error("stamped {:.1} s ahead of their arrival", .0.as_secs_f32())]
     Ahead(Duration),
     /// A stamp behind the packet's arrival.
+    #[error("stamped {:.1} s behind their arrival", .0.as_secs_f32())]
     Behind(Duration),
     /// A newer one came before it.
+    #[error("{:.3} s older than the newest", .0.as_secs_f32())]
     Old(Duration),
     /// A counter that fell, or is unchanged though the command changed.
+    #[error("counted backwards")]
     Counter,
-}
-
-impl fmt::Display for Doubt {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Ahead(by) => write!(f, "stamped {:.1} s ahead of their arrival", by.as_secs_f32()),
-            Self::Behind(by) => write!(f, "stamped {:.1} s behind their arrival", by.as_secs_f32()),
-            Self::Old(by) => write!(f, "{:.3} s older than the newest", by.as_secs_f32()),
-            Self::Counter => f.write_str("counted backwards"),
-        }
-    }
 }
 
 /// Changes by a packet.
