@@ -102,7 +102,8 @@ impl Surroundings {
                     || path.distance_to(at) < reach
                     || stops.distance_to(at) < reach;
                 if is_close == is_first {
-                    self.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
+                    let robot = Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed);
+                    self.add(Obstacle { leads: other.side == Side::Ours, ..robot });
                 }
             }
         }
