@@ -41,14 +41,12 @@ pub struct Obstacle<F> {
     /// Whether it is a body to collide with. A robot that leaves a region without a body may go through
     /// others.
     pub is_body: bool,
-    /// Whether it may be followed where it gets away just ahead: a teammate.
-    pub leads: bool,
 }
 
 impl<F: Copy> Obstacle<F> {
     /// A body that stands still: a wall.
     pub fn standing(shape: Shape<F>) -> Self {
-        Self::moving(shape, Vector::default())
+        Self { shape, velocity: Vector::default(), is_body: true }
     }
 
     /// A region without a body that the rules forbid to enter.
@@ -63,7 +61,7 @@ impl<F: Copy> Obstacle<F> {
 
     /// A body that moves.
     pub fn moving(shape: Shape<F>, velocity: Vector<F>) -> Self {
-        Self { shape, velocity, is_body: true, leads: false }
+        Self { shape, velocity, is_body: true }
     }
 }
 
@@ -183,7 +181,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>, carried: &mut Carried<F>) -> Detour
         return Detour { verdict, goal: next.position, length: 0.0, restraint, next, motion };
     }
     let mut scene = Scene::new(course.obstacles, within, course.effort);
-    scene.look(from, velocity);
+    scene.look();
     if scene.is_inside(from) {
         return escape(course, &mut scene, carried);
     }

@@ -39,8 +39,8 @@ impl<'o, F: Copy> Scene<'o, F> {
         Self { obstacles, items: heapless::Vec::new(), moves: false, within, effort: Cell::new(effort) }
     }
 
-    /// Computes the items of all obstacles around a robot at `from` that drives with `own`, m/s.
-    pub(super) fn look(&mut self, from: Point<F>, own: Vector<F>) {
+    /// Computes the items of all obstacles.
+    pub(super) fn look(&mut self) {
         for obstacle in self.obstacles {
             let velocity = obstacle.velocity;
             let mut item = Item {
@@ -53,9 +53,6 @@ impl<'o, F: Copy> Scene<'o, F> {
             };
             self.moves |= item.moves;
             item.enclose(&obstacle.shape);
-            if item.moves && obstacle.leads {
-                item.let_lead(velocity, from, own);
-            }
             // The capacity suffices: the obstacles were counted above.
             let _ = self.items.push(item);
         }
@@ -268,22 +265,6 @@ impl<F: Copy> Item<F> {
         self.brake = square(radius + corner * math::min(margin, BRAKE_SKIN));
     }
 
-    /// Takes a teammate that gets away just ahead of the robot, with `velocity`, for one to follow, not to
-    /// drive around: robots that move in a row start together. Braking still keeps off it.
-    fn let_lead(&mut self, velocity: Vector<F>, from: Point<F>, own: Vector<F>) {
-        let off = self.center - from;
-        let square_distance = off.dot(off);
-        if square_distance > square(LEADER_NEAR) {
-            return;
-        }
-        let distance = math::sqrt(square_distance);
-        let (lead, followed) = (velocity.dot(off), own.dot(off));
-        if lead > LEADER_SPEED_MIN * distance && lead > followed - LEADER_SPEED_ERROR * distance {
-            self.route = NOWHERE;
-            self.brake = math::min(self.brake, square(math::max(distance - TOUCH, 0.0)));
-        }
-    }
-
     /// Excludes it: no path touches it any more.
     fn leave_out(&mut self) {
         (self.route, self.brake) = (NOWHERE, NOWHERE);
@@ -434,12 +415,6 @@ const A_LITTLE: f32 = 0.1;
 const NOWHERE: f32 = -1.0;
 /// Start and goal count as touching below this, m.
 const TOUCH: f32 = 0.000_5;
-/// A body no farther ahead may be followed, m: in a row of robots, 0.3 m, and what they fall behind.
-const LEADER_NEAR: f32 = 0.6;
-/// It gets away with more than this, m/s: the noise of a robot that stands is less.
-const LEADER_SPEED_MIN: f32 = 0.1;
-/// Speeds of two robots that start together differ by less, m/s: noise, and one camera frame of acceleration.
-const LEADER_SPEED_ERROR: f32 = 0.1;
 /// A slower obstacle counts as standing, m/s.
 const SPEED_MIN: f32 = 0.02;
 

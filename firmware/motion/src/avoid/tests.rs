@@ -156,7 +156,7 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
         let velocity = Vector::polar(1.5 + dice.within(1.5), Angle::new(dice.within(3.0)));
         let stop = velocity * (0.5 * velocity.norm() / course.limits.braking);
         let (mut free, path) = (Scene::new(&scene, None, EFFORT_MAX), Segment::new(from, from + stop));
-        free.look(from, Vector::default());
+        free.look();
         if free.is_clear(path.from, path.vector(), 0.0, 1.0) && SURFACE.contains(path.to) {
             course.velocity = velocity;
         }
@@ -268,7 +268,7 @@ fn every_place_of_overlapping_shapes_has_a_way_out() {
         scene.push(Obstacle::region(half));
         let from = at(dice.within(4.7), dice.within(3.2));
         let mut found = Scene::new(&scene, Some(SURFACE), EFFORT_MAX);
-        found.look(from, Vector::default());
+        found.look();
         let exit = found.exit(from, &mut ExitSearch::default());
         assert!(SURFACE.contains(exit), "scene {number}: {from:?} → {exit:?}");
         assert!(scene.iter().all(|o| o.shape.distance_to(exit) > 0.0), "scene {number}: {from:?} → {exit:?}");
@@ -421,27 +421,4 @@ fn without_a_route_a_robot_drives_on_as_far_as_it_can_brake_or_stays_as_asked() 
         let distance = -drive(start, 3.0).deepest;
         assert!(kept.contains(&distance), "straight on {straight_on}: {distance} m from the wall");
     }
-}
-
-#[test]
-fn robots_that_move_in_a_row_keep_their_places_in_it() {
-    // Two of a wall, 0.31 m apart, that go 0.8 m to the same side: the gap between them.
-    let limits = FreeLimits::default();
-    let (mut leader, mut fast) = (at(0.0, 0.0), Vector::default());
-    let mut follower = course(at(0.0, -0.31), at(0.0, 0.49), &[]);
-    let mut carried = Carried::default();
-    let mut widest = 0.0_f32;
-    for _ in 0..150 {
-        let speed: Vector<Field> = fast;
-        let robot = Obstacle::robot(leader, speed, 0.21 + 0.1 * speed.norm());
-        let ahead = [Obstacle { leads: true, ..robot }];
-        let path = super::plan(&Course { obstacles: &ahead, ..follower }, &mut carried);
-        let next = limits.plan(leader, fast, at(0.0, 0.8)).at(STEP);
-        (leader, fast) = (next.position, next.velocity);
-        (follower.from, follower.velocity) = (path.next.position, path.next.velocity);
-        let gap = leader.distance(follower.from);
-        widest = widest.max(gap);
-    }
-    assert!(follower.from.distance(follower.to) < 0.01, "it stands at {:?}", follower.from);
-    assert!(widest < 0.4, "a gap of {widest} m");
 }

@@ -86,8 +86,6 @@ impl Surroundings {
         // Close to the ball bodies touch: a robot that went around every opponent there would never have it.
         let margin = if mode == DriveMode::Avoiding { ROBOTS } else { ROBOTS_AT_BALL };
         let radius = 2.0 * BODY + margin;
-        // In a row of a wall one follows the other; out of a region, and where the rules move robots, it goes round.
-        let follows = belief.game.phase == Phase::Run && !leaves && me.distance(to) < FOLLOWS_FOR;
         // Out of a region all others count; first those that it could reach before it is planned again.
         for is_first in [true, false] {
             if !is_first {
@@ -104,8 +102,7 @@ impl Surroundings {
                     || path.distance_to(at) < reach
                     || stops.distance_to(at) < reach;
                 if is_close == is_first {
-                    let robot = Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed);
-                    self.add(Obstacle { leads: follows && other.side == Side::Ours, ..robot });
+                    self.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
                 }
             }
         }
@@ -239,8 +236,6 @@ const ASIDE_FOR: f32 = 0.4;
 /// A moving robot may be elsewhere than received, by its velocity's error over this time, s: two camera
 /// frames.
 const STRAYS_FOR: f32 = 0.1;
-/// A robot with a longer way goes round teammates that get away before it, m: those of a wall shift by less.
-const FOLLOWS_FOR: f32 = 1.0;
 /// At 3 m/s and 3.5 m/s² a robot stops in 0.43 s times its speed, s.
 const STOPS_IN: f32 = 0.5;
 /// Others within this distance count first for a robot that leaves a region, m: half a second's way.
