@@ -20,8 +20,10 @@ pub(super) const US: Colour = Colour::Blue;
 pub(super) struct Script {
     drill: DrillKind,
     start: DrillStart,
-    /// Side to which the carrier goes, ±1, along y.
+    /// Side to which the carrier goes first, ±1, along y.
     side: f32,
+    /// Time at which the ball came into play, s.
+    began_s: Option<f64>,
     /// Offset of each marker from the one of ours that it follows.
     follows: Vec<Option<(Who, Vector<Field>)>>,
     /// Whether the ball has been played by another robot than the lead since the beginning.
@@ -55,6 +57,7 @@ impl Script {
             drill,
             // Away from our keeper.
             side: if lead.y() >= keepers_side { 1.0 } else { -1.0 },
+            began_s: None,
             follows: follows(drill, start),
             loose: matches!(drill, DrillKind::Rebound | DrillKind::GoalLine),
             given_s: None,
@@ -68,6 +71,9 @@ impl Script {
         let now = world.time();
         if phase == Phase::FreeKick(THEM) {
             self.given_s.get_or_insert(now);
+        }
+        if phase == Phase::Run {
+            self.began_s.get_or_insert(now);
         }
         if world.last_touch().is_some_and(|(who, _)| who != them(self.start.lead)) && phase == Phase::Run {
             self.loose = true;
@@ -131,7 +137,7 @@ impl Script {
         Wanted::go(if blocked { me } else { to }, face)
     }
 
-    /// Along our area with the ball, and a shot as soon as the goal is open.
+    /// To and fro along our area with the ball, and a shot as soon as the goal is open.
     fn carry(&self, world: &World, robot: &Robot) -> Wanted {
         let field = &world.pitch().field;
         let gap = gap(world, world.ball.position);
@@ -140,19 +146,35 @@ impl Script {
             return take_ball(world, robot);
         }
         let carried = robot.pose.position.distance(self.start.theirs[self.start.lead].position);
+        let held_s = self.began_s.map_or(0.0, |began| (world.time() - began) as f32);
         let aimed = (face - robot.pose.heading).abs() < AIMED_RAD;
-        let shoots = gap.angle > OPEN_DEG.to_radians() || carried > CARRIES_MAX_M;
+        let opens = gap.angle > OPEN_DEG.to_radians();
+        let shoots = opens || carried > CARRIES_MAX_M || held_s > CARRIES_FOR_S;
         let goal = field.goal_center(OUR_END);
         let out = (robot.pose.position - goal).unit().unwrap_or(Vector::new(1.0, 0.0));
-        let along = out.rotated(Angle::new(self.side * std::f32::consts::FRAC_PI_2));
+        let along = out.rotated(Angle::new(self.side_after(held_s) * std::f32::consts::FRAC_PI_2));
         let at = off_area(field, robot.pose.position + along * 0.5, BALL_AHEAD_M + 0.1);
         Wanted {
             at: if shoots { robot.pose.position } else { at },
             face,
-            speed: CARRY_SPEED_M_S,
+            speed: SIDEWAYS_M_S,
             kick: (shoots && aimed).then_some(SHOT_M_S),
             dribbler: 1.0,
         }
+    }
+
+    /// Side to which the carrier goes after `held_s` seconds, ±1.
+    fn side_after(&self, held_s: f32) -> f32 {
+        let mut turns_s = 0.0;
+        let mut side = self.side;
+        for leg_s in &self.start.legs_s {
+            turns_s += leg_s;
+            if held_s < turns_s {
+                break;
+            }
+            side = -side;
+        }
+        side
     }
 
     /// Keeps the ball at its front with its back to the nearest of ours, and moves away from it, as far as
@@ -395,6 +417,10 @@ const TURN_WITH_BALL_RAD_S: f32 = 4.0;
 const TURN_GAIN: f32 = 8.0;
 /// Speed with the ball, m/s.
 const CARRY_SPEED_M_S: f32 = 0.8;
+/// Speed along our area with the ball, m/s: carriers of the recorded situations reach 0.9 to 1.1.
+const SIDEWAYS_M_S: f32 = 1.0;
+/// It shoots at the latest after this time, s: their longest hold before a goal.
+const CARRIES_FOR_S: f32 = 2.5;
 /// A carrier shoots at the latest after this way, m: the rules' 1 m less what the ball rolls.
 const CARRIES_MAX_M: f32 = 0.8;
 /// A shielder stays this near to where it began, m.

@@ -40,6 +40,8 @@ pub(super) struct DrillStart {
     pub(super) lead: usize,
     /// Number of the opponent that shoots the cross, and where it does.
     pub(super) shooter: Option<(usize, Point<Field>)>,
+    /// Times for which a carrier goes to one side before it turns back, in turn, s.
+    pub(super) legs_s: [f32; LEGS],
 }
 
 /// Moments of which a drill can be drawn: for each situation its frames. Situations of the kind that the
@@ -111,6 +113,7 @@ pub(super) fn draw(
         opening: Opening::OpenPlay,
         lead,
         shooter: None,
+        legs_s: [0.0; LEGS],
     };
     let field = situation.league.field();
     match drill {
@@ -121,6 +124,7 @@ pub(super) fn draw(
         DrillKind::GoalLine => start.put_at_goal_line(&field, chance),
     }
     start.make_legal(&field);
+    start.legs_s = [(); LEGS].map(|()| chance.between(LEG_MIN_S, LEG_MAX_S));
     Some(start)
 }
 
@@ -321,6 +325,11 @@ const MOVED_MAX_M: f32 = 0.08;
 const AT_BALL_M: f32 = 0.3;
 /// A carrier begins at most this far from our area, m.
 const CARRIER_FROM_AREA_MAX_M: f32 = 1.6;
+/// The champions' carriers turned back after these times, s: 9 of 11 turns of the recorded goals.
+const LEG_MIN_S: f32 = 0.2;
+const LEG_MAX_S: f32 = 0.7;
+/// Legs that a carrier goes at most: longer than it has the ball.
+pub(super) const LEGS: usize = 12;
 /// Distance of the marker from the ball, m: as the champions' stood.
 const MARKER_OFF_MIN_M: f32 = 0.6;
 const MARKER_OFF_MAX_M: f32 = 0.8;
