@@ -9,6 +9,7 @@ use nrf24::{Base, Channel, Rate, Robot, Station};
 use nrf24_model::{Air, AirCounts, Chip, ChipEnable, Faults, Pause, Spi};
 use protocol::frame::{Audience, Frame, Sender, Sessions, TeamKey};
 use protocol::serial::{Lines, line};
+use protocol::station::{self, StationMessage, StationReport};
 use protocol::{Instant, RobotId, TeamId};
 
 /// What is simulated.
@@ -156,6 +157,8 @@ struct Believer {
     handed: HashMap<Vec<u8>, u32>,
     believed: HashMap<Vec<u8>, u32>,
     heard_host: u64,
+    /// Times of frames of the host that were believed.
+    host_times: Vec<u64>,
 }
 
 struct Team {
@@ -172,18 +175,22 @@ struct Team {
     sent: HashMap<Vec<u8>, (Kind, u64)>,
     news: Vec<bool>,
     station_news: bool,
+    /// Messages of the base station itself.
+    answers: Vec<StationMessage>,
     /// Time of the last frame believed, of each robot from the host and of the host from each robot, µs.
     heard: [[u64; ROBOTS as usize]; 2],
 }
 
 const KEY: TeamKey = TeamKey([7, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
 const STEP: u64 = 10;
+/// Not the default: that of some team's key.
+pub(crate) const ADDRESS: u16 = 0x9c35;
 
 impl Team {
     fn new(air: &Air, number: u8, plan: &Plan) -> Self {
         let id = TeamId(number + 1);
         let megahertz = if plan.same_channel { 76 } else { 76 + 4 * number };
-        let channel = Channel { team: id, megahertz, rate: plan.rate };
+        let channel = Channel { team: id, megahertz, rate: plan.rate, address: ADDRESS };
         let chip = air.chip();
         let base = Base::start(Instant(0), channel, chip.spi(), chip.chip_enable(), chip.pause()).unwrap();
         chip.take_spent();
@@ -210,6 +217,7 @@ impl Team {
             sent: HashMap::new(),
             news: vec![false; usize::from(ROBOTS)],
             station_news: false,
+            answers: Vec::new(),
             heard: [[WARM_UP; ROBOTS as usize]; 2],
         }
     }
@@ -288,7 +296,7 @@ pub(crate) fn run(plan: &Plan) -> Outcome {
     outcome
 }
 
-const WARM_UP: u64 = 500_000;
+pub(crate) const WARM_UP: u64 = 500_000;
 /// What is sent last may still be under way.
 const COOL_DOWN: u64 = 200_000;
 
@@ -361,6 +369,10 @@ fn serve(team: &mut Team, now: u64, outcome: &mut Outcome) {
         team.station_news = line.is_some();
         let frames: Vec<_> = line.iter().flatten().filter_map(|byte| team.host_line.push(*byte)).collect();
         for frame in frames {
+            if let Some(message) = station::read(&frame) {
+                team.answers.push(message);
+                continue;
+            }
             let key = |sender: RobotId| KEY.of_robot(sender).team;
             if believe(&mut team.at_host, &frame, team.id, key, RobotId::ZERO, outcome) {
                 settle(&team.sent, &frame, now, outcome);
@@ -394,6 +406,7 @@ fn serve(team: &mut Team, now: u64, outcome: &mut Outcome) {
                         outcome.longest_silence.max(now - believer.heard_host.max(WARM_UP));
                 }
                 believer.heard_host = now;
+                believer.host_times.push(now);
                 hear(&mut team.heard[0], number, now, &mut outcome.longest_gap[0]);
             }
             settle(&team.sent, &frame, now, outcome);
@@ -461,4 +474,86 @@ pub(crate) fn demand(rate: Rate, hertz: u64) -> u64 {
     // Their bytes in acknowledgements that are on the air anyway: version and team less, two headers more.
     let up = robots * (20 * BEACON as u64 + 10 * TELEMETRY as u64) * 8 * rate.bit_time();
     hertz * down + welcomes + relayed + up
+}
+
+/// One team whose channel changes while it runs.
+pub(crate) struct Channels {
+    pub(crate) air: Air,
+    pub(crate) now: u64,
+    /// The host sends nothing.
+    pub(crate) is_silent: bool,
+    /// Newest report on each robot, by number.
+    pub(crate) reports: Vec<StationReport>,
+    /// Sweeps and counts of the last scan.
+    pub(crate) spectrum: Option<(u8, Vec<u8>)>,
+    /// Frames believed twice or altered.
+    pub(crate) wrong: u64,
+    plan: Plan,
+    team: Team,
+}
+
+impl Channels {
+    pub(crate) fn new(faults: Faults, seed: u64) -> Self {
+        Self::at(Rate::Mbps2, faults, seed)
+    }
+
+    pub(crate) fn at(rate: Rate, faults: Faults, seed: u64) -> Self {
+        let plan = Plan { seed, ..Plan::one_team(rate, faults) };
+        let air = Air::new(plan.faults, plan.seed);
+        let team = Team::new(&air, 0, &plan);
+        let (reports, spectrum) = (Vec::new(), None);
+        Self { air, now: 0, is_silent: false, reports, spectrum, wrong: 0, plan, team }
+    }
+
+    pub(crate) fn run(&mut self, duration: u64) {
+        let (until, mut outcome) = (self.now + duration, Outcome::default());
+        while self.now < until {
+            self.air.advance(self.now * 1_000);
+            if !self.is_silent {
+                traffic(&self.plan, &mut self.team, self.now, 0, false, &mut outcome);
+            }
+            serve(&mut self.team, self.now, &mut outcome);
+            self.now += STEP;
+        }
+        self.wrong += outcome.twice + outcome.altered;
+        for answer in self.team.answers.drain(..) {
+            match answer {
+                StationMessage::Report(report) => {
+                    self.reports.retain(|known| known.robot != report.robot);
+                    self.reports.push(report);
+                }
+                StationMessage::Spectrum(sweeps, counts) => self.spectrum = Some((sweeps, counts.to_vec())),
+                other => panic!("a base station does not say {other:?}"),
+            }
+        }
+    }
+
+    pub(crate) fn tell(&mut self, message: &StationMessage) {
+        self.team.station.end.push(Instant(self.now), &line(&station::packet(message)));
+        self.team.station_news = true;
+    }
+
+    /// The newest report; all name the same plan.
+    pub(crate) fn report(&self) -> Option<StationReport> {
+        self.reports.last().copied()
+    }
+
+    /// When the last robot believed its host again after that time; `None`: not all did.
+    pub(crate) fn all_heard_after(&self, since: u64) -> Option<u64> {
+        let first = |robot: &Believer| robot.host_times.iter().find(|at| **at > since).copied();
+        self.team.at_robots.iter().map(first).try_fold(0, |last, at| Some(last.max(at?)))
+    }
+
+    pub(crate) fn robots_are_at(&self, megahertz: u8) -> bool {
+        self.team.robots.iter().all(|robot| robot.end.channel().megahertz == megahertz)
+    }
+
+    pub(crate) fn power_robots(&self, on: bool) {
+        self.team.robots.iter().for_each(|robot| robot.chip.power(on));
+    }
+
+    pub(crate) fn reset_base(&self) {
+        self.team.station.chip.power(false);
+        self.team.station.chip.power(true);
+    }
 }
