@@ -39,6 +39,10 @@
 //! [limits]                        # of our robots' drives; their own hold where they are stricter
 //! speed = 2.0                     # m/s; left out: their own
 //! acceleration = 2.5              # m/s²; left out: their own
+//!
+//! [radio]                         # of a base station at serial:
+//! channel = 40                    # MHz above 2,400; left out: by the team's number
+//! rate = 2                        # Mbit/s on the air, 1 or 2
 //! ```
 
 mod change;
@@ -51,7 +55,9 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use foreign::excerpt;
-use protocol::RobotId;
+use protocol::frame::TeamKey;
+use protocol::station::RadioPlan;
+use protocol::{RobotId, TeamId};
 use rules::{Colour, League};
 use serde::Deserialize;
 use ssl::net::{addresses, split_address};
@@ -130,6 +136,9 @@ pub struct TeamSettings {
     /// Limits of our robots' motion.
     #[serde(default)]
     pub limits: DriveSettings,
+    /// Place of a base station and its robots on the air.
+    #[serde(default)]
+    pub radio: AirSettings,
     /// The part of the field that is practised on.
     #[serde(default)]
     pub practice: PracticeSettings,
@@ -151,6 +160,35 @@ pub struct DriveSettings {
     pub speed: Option<f32>,
     /// Greatest acceleration of our robots, m/s².
     pub acceleration: Option<f32>,
+}
+
+/// Place of a base station and its robots on the air.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AirSettings {
+    /// MHz above 2,400; left out: by the team's number.
+    pub channel: Option<u8>,
+    /// Mbit/s on the air, 1 or 2; left out: 2.
+    pub rate: Option<u8>,
+}
+
+impl AirSettings {
+    /// The plan of a team with that key, by which its radios have addresses of their own.
+    pub fn plan(&self, team: TeamId, key: TeamKey) -> RadioPlan {
+        let default = RadioPlan::of_team(team);
+        RadioPlan {
+            channel: self.channel.unwrap_or(default.channel),
+            megabits: self.rate.unwrap_or(default.megabits),
+            address: key.of_team().team().radio_address(),
+        }
+    }
+
+    fn checked(self) -> Result<Self, ConfigError> {
+        for (parameter, value) in [(&parameters::CHANNEL, self.channel), (&parameters::AIR_RATE, self.rate)] {
+            value.map(|value| parameter.checked(f32::from(value))).transpose()?;
+        }
+        Ok(self)
+    }
 }
 
 /// Deviations of one robot from what is ordered.
@@ -215,6 +253,8 @@ pub struct TeamConfig {
     pub roll: Option<f32>,
     /// Limits of our robots' motion.
     pub limits: DriveSettings,
+    /// Place of a base station on the air.
+    pub air: AirSettings,
     /// The tactics of the program's coach.
     pub tactics: Tactics,
     /// The part of the field that is practised on.
@@ -293,6 +333,10 @@ impl TeamSettings {
                 speed: self.limits.speed.or(below.limits.speed),
                 acceleration: self.limits.acceleration.or(below.limits.acceleration),
             },
+            radio: AirSettings {
+                channel: self.radio.channel.or(below.radio.channel),
+                rate: self.radio.rate.or(below.radio.rate),
+            },
             tactics: self.tactics.or(below.tactics),
             practice: PracticeSettings {
                 within: self.practice.within.or(below.practice.within),
@@ -340,6 +384,7 @@ impl TeamSettings {
             numbers: numbers::parse(&self.numbers)?,
             roll,
             limits: self.limits.checked()?,
+            air: self.radio.checked()?,
             tactics: tactics.map_err(|description| error("tactics", description))?,
             practice: Practice::parse(&self.practice)
                 .map_err(|(key, description)| error(key, description))?,
