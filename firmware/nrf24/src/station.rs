@@ -37,7 +37,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Station<S, C, D> {
         for byte in bytes {
             let Some(frame) = self.lines.push(*byte) else { continue };
             if station::is_message(&frame) {
-                self.take(now, station::read(&frame));
+                self.take(now, station::read(&frame).as_ref());
             } else if self.base.send(now, &frame).is_err() {
                 self.refused = self.refused.saturating_add(1);
             }
@@ -54,14 +54,14 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Station<S, C, D> {
     }
 
     /// Takes a message of the host; what was corrupted is counted.
-    fn take(&mut self, now: Instant, message: Option<StationMessage>) {
+    fn take(&mut self, now: Instant, message: Option<&StationMessage>) {
         match message {
             Some(StationMessage::Plan(team, plan)) => {
-                self.base.tune(now, Channel::of(team, plan));
+                self.base.tune(now, Channel::of(*team, *plan));
                 self.report = 0;
             }
             Some(StationMessage::Scan(sweeps)) => {
-                if !self.base.scan(now, sweeps) {
+                if !self.base.scan(now, *sweeps) {
                     self.answer = Some(StationMessage::Spectrum(0, heapless::Vec::new()));
                 }
             }

@@ -70,7 +70,9 @@ fn packets_of_each_robot_are_counted_and_add_up() {
 fn a_scan_names_the_quietest_channels_and_is_refused_in_play() {
     let mut channels = Channels::new(Faults::default(), 5);
     let carriers = [(10, 1.0), (11, 0.6), (40, 0.3), (41, 0.9), (60, 0.2)];
-    carriers.iter().for_each(|(channel, share)| channels.air.carrier(*channel, *share));
+    for (channel, share) in carriers {
+        channels.air.carrier(channel, share);
+    }
     channels.run(WARM_UP);
     channels.tell(&StationMessage::Scan(50));
     channels.run(50_000);
