@@ -45,6 +45,7 @@
 //! rate = 2                        # Mbit/s on the air, 1 or 2
 //! ```
 
+mod air;
 mod change;
 mod numbers;
 pub mod parameters;
@@ -55,9 +56,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use foreign::excerpt;
-use protocol::frame::TeamKey;
-use protocol::station::RadioPlan;
-use protocol::{RobotId, TeamId};
+use protocol::RobotId;
 use rules::{Colour, League};
 use serde::Deserialize;
 use ssl::net::{addresses, split_address};
@@ -68,7 +67,8 @@ use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::Tactics;
 
 pub use crate::practice::PracticeSettings;
-pub use change::ParameterChange;
+pub use air::AirSettings;
+pub use change::{DriveSettings, ParameterChange};
 pub use numbers::RadioNumber;
 pub(crate) use parameters::KICK_RANGE;
 pub use tracker_in::TrackerIn;
@@ -150,45 +150,6 @@ pub struct TeamSettings {
 pub struct BallSettings {
     /// Deceleration of a rolling ball, m/s².
     pub roll: Option<f32>,
-}
-
-/// Limits of our robots' motion; their own limits hold where they are stricter.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DriveSettings {
-    /// Greatest speed of our robots, m/s.
-    pub speed: Option<f32>,
-    /// Greatest acceleration of our robots, m/s².
-    pub acceleration: Option<f32>,
-}
-
-/// Place of a base station and its robots on the air.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AirSettings {
-    /// MHz above 2,400; left out: by the team's number.
-    pub channel: Option<u8>,
-    /// Mbit/s on the air, 1 or 2; left out: 2.
-    pub rate: Option<u8>,
-}
-
-impl AirSettings {
-    /// The plan of a team with that key, by which its radios have addresses of their own.
-    pub fn plan(&self, team: TeamId, key: TeamKey) -> RadioPlan {
-        let default = RadioPlan::of_team(team);
-        RadioPlan {
-            channel: self.channel.unwrap_or(default.channel),
-            megabits: self.rate.unwrap_or(default.megabits),
-            address: key.of_team().team().radio_address(),
-        }
-    }
-
-    fn checked(self) -> Result<Self, ConfigError> {
-        for (parameter, value) in [(&parameters::CHANNEL, self.channel), (&parameters::AIR_RATE, self.rate)] {
-            value.map(|value| parameter.checked(f32::from(value))).transpose()?;
-        }
-        Ok(self)
-    }
 }
 
 /// Deviations of one robot from what is ordered.

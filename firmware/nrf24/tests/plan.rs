@@ -3,7 +3,8 @@
 
 mod common;
 
-use common::{ADDRESS, Channels, WARM_UP};
+use common::channels::Channels;
+use common::{ADDRESS, WARM_UP};
 use nrf24::Rate;
 use nrf24_model::Faults;
 use protocol::TeamId;

@@ -99,11 +99,8 @@ fn plot(sweeps: u8, counts: &[u8]) -> String {
 
 /// The channels with the least power on them and beside them, those furthest from any power first.
 fn quietest(counts: &[u8]) -> Vec<u8> {
-    let power = |channel: u8| counts.get(usize::from(channel)).copied().map_or(0, u32::from);
-    let busy: Vec<u8> = (0_u8..).zip(counts).filter(|(_, count)| **count > 0).map(|(at, _)| at).collect();
-    let distance = |channel: u8| busy.iter().map(|at| at.abs_diff(channel)).min().unwrap_or(u8::MAX);
     let mut channels: Vec<u8> = (CHANNEL_MIN..=CHANNEL_MAX).collect();
-    channels.sort_by_key(|at| (power(at - 1) + power(*at) + power(at + 1), u8::MAX - distance(*at), *at));
+    channels.sort_by_key(|at| (power_around(counts, *at), u8::MAX - distance_to_power(counts, *at), *at));
     let mut named: Vec<u8> = Vec::new();
     for channel in channels {
         if named.len() < NAMED && named.iter().all(|known| known.abs_diff(channel) >= APART) {
@@ -111,6 +108,17 @@ fn quietest(counts: &[u8]) -> Vec<u8> {
         }
     }
     named
+}
+
+/// Sweeps with power on a channel and on its two neighbours.
+fn power_around(counts: &[u8], channel: u8) -> u32 {
+    counts.iter().skip(usize::from(channel - 1)).take(3).copied().map(u32::from).sum()
+}
+
+/// MHz from a channel to the next with power.
+fn distance_to_power(counts: &[u8], channel: u8) -> u8 {
+    let busy = (0_u8..).zip(counts).filter(|(_, count)| **count > 0);
+    busy.map(|(at, _)| at.abs_diff(channel)).min().unwrap_or(u8::MAX)
 }
 
 #[cfg(test)]
