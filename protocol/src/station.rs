@@ -1,8 +1,8 @@
 //! `station`: what a host and its base station tell each other beside frames, on the serial line alone and
 //! never on the air: radio settings, counts of packets, power on the channels (SPEC.md: StationMessage).
 //!
-//! `mark 3 | message, postcard | check 4`. The mark is no frame's start, so that a base station or a host that
-//! does not know these messages refuses them. The check guards against a corrupted line; it is no secret.
+//! `mark 3 | message, postcard | check 4`. The mark is no frame's start, so that a base station or a host
+//! that does not know these messages refuses them. The check guards against a corrupted line; it is no secret.
 
 use serde::{Deserialize, Serialize};
 
@@ -93,10 +93,10 @@ pub enum StationMessage {
 pub fn packet(message: &StationMessage) -> Packet {
     let mut packet = Packet::new();
     let fits = packet.resize_default(packet.capacity()).is_ok();
-    let (Some(body), true) = (packet.get_mut(MARK.len()..), fits) else { return Packet::new() };
+    let (Some(body), true) = (packet.get_mut(FRAME_MARK.len()..), fits) else { return Packet::new() };
     let len = postcard::to_slice(message, body).map_or(0, |used| used.len());
-    packet.truncate(MARK.len() + len);
-    packet.iter_mut().zip(MARK).for_each(|(to, from)| *to = from);
+    packet.truncate(FRAME_MARK.len() + len);
+    packet.iter_mut().zip(FRAME_MARK).for_each(|(to, from)| *to = from);
     let check = check(&packet);
     if len == 0 || packet.extend_from_slice(&check).is_err() {
         packet.clear();
@@ -106,7 +106,7 @@ pub fn packet(message: &StationMessage) -> Packet {
 
 /// Whether a packet is a station's message, sound or not: no frame begins so.
 pub fn is_message(packet: &[u8]) -> bool {
-    packet.starts_with(&MARK)
+    packet.starts_with(&FRAME_MARK)
 }
 
 /// The message in a packet; `None` for frames, and what was corrupted.
@@ -115,7 +115,7 @@ pub fn read(packet: &[u8]) -> Option<StationMessage> {
     if *seen != check(covered) {
         return None;
     }
-    let message = crate::frame::decode(covered.strip_prefix(&MARK)?)?;
+    let message = crate::frame::decode(covered.strip_prefix(&FRAME_MARK)?)?;
     let sound = match &message {
         StationMessage::Plan(_, plan) => plan.is_sound(),
         StationMessage::Report(report) => report.plan.is_sound(),
@@ -129,7 +129,7 @@ fn check(covered: &[u8]) -> [u8; 4] {
 }
 
 /// First bytes: no version of frames, then no sender.
-const MARK: [u8; 3] = [0xb5, 0x6e, 0xff];
+const FRAME_MARK: [u8; 3] = [0xb5, 0x6e, 0xff];
 
 #[cfg(test)]
 mod tests {

@@ -332,7 +332,7 @@ fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
 #[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Nine of robots, two of a base station, two worlds, a welcome, limits, two keys, three frames and a line.
+    // Nine of robots, two of a base station, two worlds, a welcome, limits, two keys, three frames, a line.
     assert_eq!(examples, 9 + 2 + worlds().len() + 2 + 2 + 4 + commands().len());
 }
 

@@ -124,7 +124,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
                 return Ok(Some(frame));
             }
         }
-        if now.since(self.heard.0) >= LOST_AFTER && now.since(self.search.1) >= DWELL {
+        if now.since(self.heard.0) >= LOST_AFTER && now.since(self.search.1) >= DWELL_TIME {
             self.search(now)?;
         }
         self.answer(now)?;
@@ -203,7 +203,7 @@ const WAIT_MAX: Duration = Duration::millis(100);
 /// chip or a loss of 30 % costs, and above the 320 ms in which a base station asks for every number.
 const LOST_AFTER: Duration = Duration::millis(400);
 /// Time at one place of the search: a base station with a host sends a snapshot every 17 ms at least.
-const DWELL: Duration = Duration::millis(20);
+const DWELL_TIME: Duration = Duration::millis(20);
 /// Turns of the search of which one is where the base station was heard last.
 const HOME_EVERY: u16 = 4;
 /// Channels of the search.

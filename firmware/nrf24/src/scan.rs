@@ -40,7 +40,7 @@ impl Scan {
         lines: &mut Lines<S, C, D>,
     ) -> Result<(), Fault> {
         if let Some(since) = self.since {
-            if now.since(since) < LISTEN || self.is_done() {
+            if now.since(since) < LISTEN_TIME || self.is_done() {
                 return Ok(());
             }
             if lines.has_power()?
@@ -59,4 +59,4 @@ impl Scan {
 }
 
 /// Time on a channel: 130 µs until the chip listens and 40 µs of power until it is noticed (PS 6.4).
-const LISTEN: Duration = Duration(200);
+const LISTEN_TIME: Duration = Duration(200);

@@ -1,5 +1,5 @@
-//! `onetwo robot scan`: the power on the radio's channels, as a base station with a chip nRF24L01+ measures it
-//! (protocol/SPEC.md: StationMessage). Only while no host speaks: a base station in play refuses.
+//! `onetwo robot scan`: the power on the radio's channels, as a base station with a chip nRF24L01+ measures
+//! it (protocol/SPEC.md: StationMessage). Only while no host speaks: a base station in play refuses.
 
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
@@ -48,13 +48,13 @@ pub(crate) enum ScanError {
 const SWEEP_MAX: Duration = Duration::from_millis(120);
 const ANSWER_MAX: Duration = Duration::from_secs(2);
 /// A base station that just started takes the first order for its start alone.
-const TRIES: u8 = 2;
+const TRIES_MAX: u8 = 2;
 /// Quietest channels that are named.
-const NAMED: usize = 5;
+const NAMED_MAX: usize = 5;
 /// Their least distance, MHz: twice what 2 Mbit/s take.
-const APART: u8 = 4;
+const APART_MIN: u8 = 4;
 /// Length of the plot's longest bar, characters.
-const BAR: usize = 40;
+const BAR_LEN_MAX: usize = 40;
 
 pub(super) fn run(args: &ScanArgs) -> Result<(), Failure> {
     let RobotLink::Serial { device, baud } = RobotLink::parse(&args.robots)? else {
@@ -62,7 +62,7 @@ pub(super) fn run(args: &ScanArgs) -> Result<(), Failure> {
     };
     let mut link = SerialLink::open(&device, baud)?;
     note!("measures {} sweeps of 84 channels", args.sweeps);
-    for _ in 0..TRIES {
+    for _ in 0..TRIES_MAX {
         link.send(To::All, &station::packet(&StationMessage::Scan(args.sweeps)))?;
         let until = Instant::now() + SWEEP_MAX * u32::from(args.sweeps) + ANSWER_MAX;
         while Instant::now() < until {
@@ -89,7 +89,7 @@ fn plot(sweeps: u8, counts: &[u8]) -> String {
     let mut text = String::from("channel   MHz  busy %\n");
     for (channel, count) in (0_u16..).zip(counts).filter(|(_, count)| **count > 0) {
         let share = f32::from(*count) / f32::from(sweeps);
-        let bar = "#".repeat((share * BAR as f32).ceil() as usize);
+        let bar = "#".repeat((share * BAR_LEN_MAX as f32).ceil() as usize);
         let _ = writeln!(text, "{channel:>7}  {:>4}  {:>6.0}  {bar}", 2400 + channel, 100.0 * share);
     }
     let quiet: Vec<String> = quietest(counts).iter().map(u8::to_string).collect();
@@ -103,7 +103,7 @@ fn quietest(counts: &[u8]) -> Vec<u8> {
     channels.sort_by_key(|at| (power_around(counts, *at), u8::MAX - distance_to_power(counts, *at), *at));
     let mut named: Vec<u8> = Vec::new();
     for channel in channels {
-        if named.len() < NAMED && named.iter().all(|known| known.abs_diff(channel) >= APART) {
+        if named.len() < NAMED_MAX && named.iter().all(|known| known.abs_diff(channel) >= APART_MIN) {
             named.push(channel);
         }
     }
@@ -139,14 +139,14 @@ mod tests {
     #[test]
     fn the_quietest_channels_are_far_from_all_power_and_apart() {
         let named = quietest(&spectrum());
-        assert_eq!(named.len(), NAMED);
+        assert_eq!(named.len(), NAMED_MAX);
         assert_eq!(named[0], 31, "midway between 22 and 40: {named:?}");
         for (at, channel) in named.iter().enumerate() {
             assert!(
                 (24..=38).contains(channel) || (42..=50).contains(channel) || *channel >= 74,
                 "{named:?}"
             );
-            assert!(named[..at].iter().all(|known| known.abs_diff(*channel) >= APART), "{named:?}");
+            assert!(named[..at].iter().all(|known| known.abs_diff(*channel) >= APART_MIN), "{named:?}");
         }
     }
 
@@ -155,7 +155,7 @@ mod tests {
         let text = plot(50, &spectrum());
         assert_eq!(text.lines().count(), 2 + 21 + 21 + 1);
         let carrier = text.lines().find(|line| line.contains("2440")).unwrap();
-        assert_eq!(carrier, format!("     40  2440     100  {}", "#".repeat(BAR)));
+        assert_eq!(carrier, format!("     40  2440     100  {}", "#".repeat(BAR_LEN_MAX)));
         assert!(text.ends_with("[radio] channel = N)\n"));
     }
 }
