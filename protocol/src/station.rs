@@ -2,7 +2,8 @@
 //! never on the air: radio settings, counts of packets, power on the channels (SPEC.md: StationMessage).
 //!
 //! `mark 3 | message, postcard | check 4`. The mark is no frame's start, so that a base station or a host
-//! that does not know these messages refuses them. The check guards against a corrupted line; it is no secret.
+//! that does not know these messages refuses them. The check guards against a corrupted line; it is no
+//! secret.
 
 use serde::{Deserialize, Serialize};
 
