@@ -39,8 +39,13 @@
 //! [limits]                        # of our robots' drives; their own hold where they are stricter
 //! speed = 2.0                     # m/s; left out: their own
 //! acceleration = 2.5              # m/s²; left out: their own
+//!
+//! [radio]                         # of a base station at serial:
+//! channel = 40                    # MHz above 2,400; left out: by the team's number
+//! rate = 2                        # Mbit/s on the air, 1 or 2
 //! ```
 
+mod air;
 mod change;
 mod numbers;
 pub mod parameters;
@@ -62,7 +67,8 @@ use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::Tactics;
 
 pub use crate::practice::PracticeSettings;
-pub use change::ParameterChange;
+pub use air::AirSettings;
+pub use change::{DriveSettings, ParameterChange};
 pub use numbers::RadioNumber;
 pub(crate) use parameters::KICK_RANGE;
 pub use tracker_in::TrackerIn;
@@ -130,6 +136,9 @@ pub struct TeamSettings {
     /// Limits of our robots' motion.
     #[serde(default)]
     pub limits: DriveSettings,
+    /// Place of a base station and its robots on the air.
+    #[serde(default)]
+    pub radio: AirSettings,
     /// The part of the field that is practised on.
     #[serde(default)]
     pub practice: PracticeSettings,
@@ -141,16 +150,6 @@ pub struct TeamSettings {
 pub struct BallSettings {
     /// Deceleration of a rolling ball, m/s².
     pub roll: Option<f32>,
-}
-
-/// Limits of our robots' motion; their own limits hold where they are stricter.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DriveSettings {
-    /// Greatest speed of our robots, m/s.
-    pub speed: Option<f32>,
-    /// Greatest acceleration of our robots, m/s².
-    pub acceleration: Option<f32>,
 }
 
 /// Deviations of one robot from what is ordered.
@@ -215,6 +214,8 @@ pub struct TeamConfig {
     pub roll: Option<f32>,
     /// Limits of our robots' motion.
     pub limits: DriveSettings,
+    /// Place of a base station on the air.
+    pub air: AirSettings,
     /// The tactics of the program's coach.
     pub tactics: Tactics,
     /// The part of the field that is practised on.
@@ -293,6 +294,10 @@ impl TeamSettings {
                 speed: self.limits.speed.or(below.limits.speed),
                 acceleration: self.limits.acceleration.or(below.limits.acceleration),
             },
+            radio: AirSettings {
+                channel: self.radio.channel.or(below.radio.channel),
+                rate: self.radio.rate.or(below.radio.rate),
+            },
             tactics: self.tactics.or(below.tactics),
             practice: PracticeSettings {
                 within: self.practice.within.or(below.practice.within),
@@ -340,6 +345,7 @@ impl TeamSettings {
             numbers: numbers::parse(&self.numbers)?,
             roll,
             limits: self.limits.checked()?,
+            air: self.radio.checked()?,
             tactics: tactics.map_err(|description| error("tactics", description))?,
             practice: Practice::parse(&self.practice)
                 .map_err(|(key, description)| error(key, description))?,

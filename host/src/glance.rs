@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use protocol::host::Condition;
+use protocol::station::PacketCounts;
 use protocol::{Duration, Instant, RobotId, Who};
 use serde::Serialize;
 
@@ -29,6 +30,8 @@ pub struct RobotGlance {
     pub heard_ms: Option<u64>,
     /// Voltage of the battery, V; `None` where it is not measured.
     pub battery: Option<f32>,
+    /// Packets that its base station sent to it; `None` without one that counts them.
+    pub packets: Option<PacketCounts>,
     /// What its telemetry reports as wrong, each in two words.
     pub faults: Vec<&'static str>,
     /// Version of its firmware, and hashes of its image's sources, its `robot.toml` and its case base, as it
@@ -69,6 +72,7 @@ fn robot(host: &Host, shell: RobotId, now: Instant) -> Option<RobotGlance> {
         radio: numbers.radio(shell).number(),
         cameras,
         heard_ms: quality.and_then(|quality| quality.silence(now)).map(|silence| silence.0 / 1_000),
+        packets: quality.and_then(Quality::station).map(|report| report.packets),
         battery: quality.and_then(Quality::battery),
         faults: quality.map(|quality| faults(quality, now)).unwrap_or_default(),
         version: version.map(|report| report.to_string()),
@@ -114,6 +118,13 @@ pub fn table(robots: &[RobotGlance]) -> String {
             or_dash(robot.version.clone()),
             if robot.faults.is_empty() { "none".to_owned() } else { robot.faults.join(", ") }
         );
+        if let Some(packets) = robot.packets {
+            let _ = write!(
+                text,
+                "\n             base station: {} packets, {} acknowledged, {} repeats, {} lost",
+                packets.sent, packets.acknowledged, packets.repeats, packets.lost
+            );
+        }
         for sentence in &robot.wrong {
             let _ = write!(text, "\n             {sentence}");
         }

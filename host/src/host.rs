@@ -269,7 +269,8 @@ impl Host {
             Ok(
                 radio::RadioReceived::Handshake(robot)
                 | radio::RadioReceived::Version(robot, _)
-                | radio::RadioReceived::Parts(robot, _),
+                | radio::RadioReceived::Parts(robot, _)
+                | radio::RadioReceived::Station(robot, _),
             ) => InputVerdict::Robot(robot),
             Ok(radio::RadioReceived::Decision(robot, part)) => {
                 let known = &mut self.robots[robot.index()];

@@ -39,6 +39,7 @@ pub mod quantized;
 pub mod robot_io;
 pub mod serial;
 pub mod slot;
+pub mod station;
 pub mod team;
 pub mod time;
 pub mod version;

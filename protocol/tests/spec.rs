@@ -12,6 +12,7 @@ use protocol::host::{
 use protocol::parts::{Part, PartState, PartsReport};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::serial::{Lines, line};
+use protocol::station::{self, PacketCounts, RadioPlan, StationMessage, StationReport};
 use protocol::team::{
     AbortReason, BallQuality, BallReport, Beacon, Bond, Closure, CycleState, Decision, Handshake, KnownEpoch,
     Play, Progress, Role, Status, TeamMessage,
@@ -240,6 +241,21 @@ fn a_report_of_parts_has_the_bytes_of_the_specification() {
 }
 
 #[test]
+fn messages_of_a_base_station_have_the_bytes_of_the_specification() {
+    let plan = RadioPlan { channel: 40, megabits: 2, address: 0xbeef };
+    let packets = PacketCounts { sent: 500, acknowledged: 490, repeats: 60, lost: 10 };
+    let report = StationReport { plan, restarts: 1, robot: robot(3), packets };
+    for (name, message) in [
+        ("station-plan", StationMessage::Plan(TeamId(2), plan)),
+        ("station-report", StationMessage::Report(report)),
+    ] {
+        let packet = station::packet(&message);
+        assert_eq!(packet[..], worked(name)[..], "{name}: {}", hex(&packet));
+        assert_eq!(station::read(&worked(name)), Some(message));
+    }
+}
+
+#[test]
 fn the_hosts_messages_have_the_bytes_of_the_specification() {
     for (name, world) in worlds() {
         both_ways(name, &world);
@@ -316,8 +332,8 @@ fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
 #[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Nine of robots, two worlds, a welcome, limits, two keys, three frames and a line.
-    assert_eq!(examples, 9 + worlds().len() + 2 + 2 + 4 + commands().len());
+    // Nine of robots, two of a base station, two worlds, a welcome, limits, two keys, three frames, a line.
+    assert_eq!(examples, 9 + 2 + worlds().len() + 2 + 2 + 4 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {

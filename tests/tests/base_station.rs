@@ -22,7 +22,8 @@ use rules::League;
 const KEY: TeamKey = TeamKey([0x3c; 16]);
 const TEAM: TeamId = TeamId(1);
 const ROBOTS: u8 = 6;
-const CHANNEL: Channel = Channel { team: TEAM, megahertz: 6, rate: Rate::Mbps2 };
+const CHANNEL: Channel =
+    Channel { team: TEAM, megahertz: 6, rate: Rate::Mbps2, address: protocol::station::ADDRESS_DEFAULT };
 /// Simulated time and the smallest step of it, µs.
 const DURATION: u64 = 5_000_000;
 const STEP: u64 = 20;

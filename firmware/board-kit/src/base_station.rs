@@ -1,8 +1,8 @@
 //! `base_station`: a base station on any chip: the host's serial line on one side, a radio chip nRF24L01+ on
 //! the other. It holds no keys: it neither believes nor makes a frame.
 //!
-//! Its team is that of the host's first frame, so that nothing is written into it; for another team it is
-//! started again.
+//! Its team and channel are those of the host's plan, or by the team of its first frame, so that nothing is
+//! written into it.
 
 use core::cell::{Cell, RefCell};
 
@@ -14,12 +14,13 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::spi::SpiDevice;
 use embedded_io_async::{Read, Write};
-use nrf24::{Base, Fault, SERVE_EVERY, Station};
+use nrf24::{Base, Channel, Fault, SERVE_EVERY, Station};
 use protocol::TeamId;
 use protocol::frame::VERSION;
 use protocol::serial::{Line, Lines};
+use protocol::station::{self, RadioPlan, StationMessage};
 
-use crate::nrf24::{ChipWires, IRQ_POLL_PERIOD, channel, now};
+use crate::nrf24::{ChipWires, IRQ_POLL_PERIOD, now};
 use crate::radio::{UartReceiver, UartSender};
 
 /// Runs until the chip fails: its supply, its wiring, or another chip.
@@ -29,9 +30,9 @@ pub async fn run<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
     mut wires: ChipWires<S, E, N, D>,
     mut alive: impl OutputPin,
 ) -> Fault {
-    let team = first_team(&mut from_host).await;
-    defmt::info!("team {=u8}", team.0);
-    let base = match Base::start(now(), channel(team), wires.spi, wires.enable, wires.pause) {
+    let channel = first_channel(&mut from_host).await;
+    defmt::info!("team {=u8}, channel {=u8}", channel.team.0, channel.megahertz);
+    let base = match Base::start(now(), channel, wires.spi, wires.enable, wires.pause) {
         Ok(base) => base,
         Err(fault) => return fault,
     };
@@ -90,15 +91,22 @@ pub async fn run<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
     }
 }
 
-/// The team of the host's first frame.
-async fn first_team(from_host: &mut UartReceiver<impl Read>) -> TeamId {
+/// The channel of the host's first plan, or by default that of the team of its first frame. For a scan,
+/// which the host asks for again, any will do.
+async fn first_channel(from_host: &mut UartReceiver<impl Read>) -> Channel {
     let mut lines = Lines::new();
     loop {
         for byte in from_host.bytes().await {
-            if let Some(frame) = lines.push(*byte)
-                && let [VERSION, team, _, ..] = frame[..]
-            {
-                return TeamId(team);
+            let Some(frame) = lines.push(*byte) else { continue };
+            match (station::read(&frame), &frame[..]) {
+                (Some(StationMessage::Plan(team, plan)), _) => return Channel::of(team, plan),
+                (Some(StationMessage::Scan(_)), _) => {
+                    return Channel::of(TeamId(0), RadioPlan::of_team(TeamId(0)));
+                }
+                (None, [VERSION, team, _, ..]) => {
+                    return Channel::of(TeamId(*team), RadioPlan::of_team(TeamId(*team)));
+                }
+                _ => {}
             }
         }
     }

@@ -7,16 +7,12 @@ use embassy_time::{Duration, Instant, Timer};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_hal::spi::SpiDevice;
-use nrf24::{Channel, Fault, Rate, Robot, SERVE_EVERY};
+use nrf24::{Channel, Fault, Robot, SERVE_EVERY};
 use protocol::link::Packet;
-use protocol::{RobotId, TeamId};
+use protocol::station::RadioPlan;
 use runtime::ports::{RadioReceiver, RadioSender};
 
-/// A team's channel, by which base station and robots agree without a setting: 2 Mbit/s at 2,402 MHz and 4
-/// MHz more for each team number, which stays below 2,480 MHz.
-pub fn channel(team: TeamId) -> Channel {
-    Channel { team, megahertz: 2 + 4 * (team.0 % 20), rate: Rate::Mbps2 }
-}
+use crate::robot::Identity;
 
 /// The time by embassy's clock.
 pub fn now() -> protocol::Instant {
@@ -54,13 +50,15 @@ pub struct ChipSender(());
 /// Both directions of a robot's radio.
 pub type ChipRadio<S, E, N, D> = (ChipSender, ChipReceiver<S, E, N, D>);
 
-/// Both directions of a robot's radio. Call once.
+/// Both directions of a robot's radio. It starts on its team's default channel, with the address of its
+/// team's key, and searches for its base station. Call once.
 pub fn robot<S: SpiDevice, E: OutputPin, N: InputPin, D: DelayNs>(
-    team: TeamId,
-    number: RobotId,
+    who: &Identity,
     wires: ChipWires<S, E, N, D>,
 ) -> Result<ChipRadio<S, E, N, D>, Fault> {
-    let robot = Robot::start(now(), channel(team), number, wires.spi, wires.enable, wires.pause)?;
+    let (team, address) = (who.config.team, who.keys.team.radio_address());
+    let channel = Channel::of(team, RadioPlan { address, ..RadioPlan::of_team(team) });
+    let robot = Robot::start(now(), channel, who.config.robot, wires.spi, wires.enable, wires.pause)?;
     Ok((ChipSender(()), ChipReceiver { robot, irq: wires.irq, served: Instant::now() }))
 }
 

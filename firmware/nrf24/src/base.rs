@@ -6,12 +6,14 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 use protocol::frame::HEADER_LEN;
 use protocol::link::Packet;
-use protocol::{Duration, Instant, RobotId};
+use protocol::station::{PacketCounts, StationMessage};
+use protocol::{Duration, Instant, RobotId, TeamId};
 use rf24::StatusFlags;
 use rf24::radio::prelude::{EsbFifo, EsbRadio, EsbStatus};
 
 use crate::chip::{CHECK_EVERY, Channel, Fault, Lines};
 use crate::fragment::{Assembler, Cutter, Fragments, Joined, NotSent, Payload, question};
+use crate::scan::Scan;
 
 /// Counts of frames that a base station's radio sent and dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,6 +48,19 @@ struct Peer {
     received_at: Option<Instant>,
     /// True if the last acknowledgement carried something: there may be more.
     has_more: bool,
+    packets: PacketCounts,
+}
+
+/// Robots of a team that were not heard yet.
+fn peers(team: TeamId) -> [Peer; RobotId::COUNT] {
+    core::array::from_fn(|_| Peer {
+        cutter: Cutter::new(team),
+        assembler: Assembler::new(team, ASSEMBLY_TIME_MAX),
+        asked: None,
+        received_at: None,
+        has_more: false,
+        packets: PacketCounts::default(),
+    })
 }
 
 impl Peer {
@@ -88,24 +103,24 @@ pub struct Base<S, C, D> {
     checked: Instant,
     /// False while the chip is not set up to the end: its supply dipped in the middle of it.
     is_ready: bool,
+    /// The channel that it left for the present one, and when, until a robot answers here.
+    left: Option<(Channel, Instant)>,
+    /// The channel that it came back from as no robot followed.
+    failed: Option<Channel>,
+    scan: Option<Scan>,
+    /// Time of the host's last frame.
+    commanded: Option<Instant>,
     counts: BaseCounts,
 }
 
 impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
     /// Sets the chip up.
     pub fn start(now: Instant, channel: Channel, spi: S, chip_enable: C, pause: D) -> Result<Self, Fault> {
-        let peer = Peer {
-            cutter: Cutter::new(channel.team),
-            assembler: Assembler::new(channel.team, ASSEMBLY_TIME_MAX),
-            asked: None,
-            received_at: None,
-            has_more: false,
-        };
         let mut radio = Self {
             lines: Lines::new(spi, chip_enable, pause),
             channel,
             cutter: Cutter::new(channel.team),
-            peers: core::array::from_fn(|_| peer.clone()),
+            peers: peers(channel.team),
             waiting: heapless::Deque::new(),
             sending: None,
             busy: None,
@@ -114,6 +129,10 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
             search: (0, now),
             checked: now,
             is_ready: true,
+            left: None,
+            failed: None,
+            scan: None,
+            commanded: None,
             counts: BaseCounts::default(),
         };
         radio.lines.start(channel)?;
@@ -124,6 +143,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
     /// everyone: parts of snapshots, and frames of robots that the host passes on.
     pub fn send(&mut self, now: Instant, frame: &[u8]) -> Result<(), NotSent> {
         let packet = Packet::from_slice(frame).map_err(|_| NotSent::Length(frame.len()))?;
+        self.commanded = Some(now);
         if self.waiting.is_full() {
             self.waiting.pop_front();
             self.counts.late = self.counts.late.saturating_add(1);
@@ -132,21 +152,62 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
         Ok(())
     }
 
+    /// Goes to another channel; its robots find it there. If it had robots and none follows within
+    /// [`RETURN_AFTER`], it goes back, and stays until it is told a third channel.
+    pub fn tune(&mut self, now: Instant, channel: Channel) {
+        if channel == self.channel || Some(channel) == self.failed {
+            return;
+        }
+        if channel.team != self.channel.team {
+            (self.cutter, self.peers) = (Cutter::new(channel.team), peers(channel.team));
+        }
+        let has_robots = self.peers.iter().any(|peer| peer.is_here(now));
+        self.left = has_robots.then_some((self.channel, now));
+        self.failed = None;
+        self.move_to(channel);
+    }
+
+    fn move_to(&mut self, channel: Channel) {
+        self.channel = channel;
+        self.is_ready = false;
+        (self.busy, self.sending, self.repeats) = (None, None, 0);
+        self.peers.iter_mut().for_each(|peer| peer.received_at = None);
+    }
+
+    /// The channel where it is.
+    pub fn channel(&self) -> Channel {
+        self.channel
+    }
+
+    /// Starts to measure the power on all channels; false where a host's frame came within [`STANDS_AFTER`]:
+    /// robots play, and would brake. A frame that comes meanwhile ends it.
+    pub fn scan(&mut self, now: Instant, sweeps: u8) -> bool {
+        if self.commanded.is_some_and(|last| now.since(last) < STANDS_AFTER) || sweeps == 0 {
+            return false;
+        }
+        self.scan = Some(Scan::new(sweeps));
+        (self.busy, self.sending) = (None, None);
+        true
+    }
+
+    /// What a scan has found, once it is complete; the radio is back on its channel.
+    pub fn take_spectrum(&mut self) -> Option<StationMessage> {
+        let done = self.scan.take_if(|scan| scan.is_done())?;
+        self.is_ready = false;
+        Some(done.spectrum())
+    }
+
     /// Serves the chip; returns a robot's frame that came. Call until `None` when the line IRQ is low, after
     /// [`Base::send`], and every [`crate::SERVE_EVERY`] at least.
     pub fn poll(&mut self, now: Instant) -> Result<Option<Packet>, Fault> {
-        let stands = self.busy.is_some_and(|(_, since)| now.since(since) > SENDING_TIME_MAX);
-        // While it sends too: under load there is always something in the chip.
-        if stands || now.since(self.checked) >= CHECK_EVERY {
-            self.checked = now;
-            if stands || !self.is_ready || !self.lines.is_set()? {
-                self.counts.restarts = self.counts.restarts.saturating_add(1);
-                (self.busy, self.sending, self.repeats) = (None, None, 0);
-                self.is_ready = false;
-                self.lines.start(self.channel)?;
-                self.is_ready = true;
+        if let Some(scan) = &mut self.scan {
+            if self.waiting.is_empty() {
+                scan.serve(now, &mut self.lines)?;
+                return Ok(None);
             }
+            (self.scan, self.is_ready) = (None, false);
         }
+        self.check(now)?;
         // Before anything arrives: a packet and the payload in its acknowledgement are one event.
         let events = self.lines.events()?;
         while let Some((_, payload)) = self.lines.receive()? {
@@ -175,6 +236,37 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
         Ok(None)
     }
 
+    /// Goes back where no robot followed, and sets the chip up if it is not as it was set.
+    fn check(&mut self, now: Instant) -> Result<(), Fault> {
+        if let Some((before, since)) = self.left.take_if(|(_, since)| now.since(*since) > RETURN_AFTER)
+            && !self.peers.iter().any(|peer| peer.received_at.is_some_and(|at| at > since))
+        {
+            self.failed = Some(self.channel);
+            self.move_to(before);
+        }
+        let stands = self.busy.is_some_and(|(_, since)| now.since(since) > SENDING_TIME_MAX);
+        // While it sends too: under load there is always something in the chip.
+        let is_due = stands || now.since(self.checked) >= CHECK_EVERY;
+        if is_due && (stands || (self.is_ready && !self.lines.is_set()?)) {
+            self.counts.restarts = self.counts.restarts.saturating_add(1);
+            self.is_ready = false;
+        }
+        if is_due {
+            self.checked = now;
+        }
+        if !self.is_ready {
+            (self.busy, self.sending, self.repeats) = (None, None, 0);
+            self.lines.start(self.channel)?;
+            self.is_ready = true;
+        }
+        Ok(())
+    }
+
+    /// Packets to one robot since the start.
+    pub fn packets(&self, robot: RobotId) -> PacketCounts {
+        self.peers.get(robot.index()).map_or(PacketCounts::default(), |peer| peer.packets)
+    }
+
     /// Counts since the start.
     pub fn counts(&self) -> BaseCounts {
         let robots = self.peers.iter().fold(Joined::default(), |sum, peer| {
@@ -192,7 +284,15 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
     fn answered(&mut self, now: Instant, robot: RobotId, came: bool) -> Result<(), Fault> {
         self.busy = None;
         self.lines.radio.clear_status_flags(StatusFlags::default().with_tx_ds(true).with_tx_df(true))?;
+        let repeats = if self.is_asking { 0 } else { self.lines.repeats()? };
         let Some(peer) = self.peers.get_mut(robot.index()) else { return Ok(()) };
+        if !self.is_asking {
+            let packets = &mut peer.packets;
+            packets.sent = packets.sent.wrapping_add(1);
+            packets.repeats = packets.repeats.wrapping_add(u32::from(repeats));
+            let end = if came { &mut packets.acknowledged } else { &mut packets.lost };
+            *end = end.wrapping_add(1);
+        }
         if came {
             peer.received_at = Some(now);
         } else {
@@ -347,6 +447,11 @@ const ASK_EVERY: Duration = Duration::millis(10);
 const PRESENCE_LEASE: Duration = Duration::millis(500);
 /// Period of the search for one number: every one in 0.32 s, without repeats, 3 % of the air.
 const SEARCH_EVERY: Duration = Duration::millis(20);
+/// Time after which a base station goes back to the channel that it left, where no robot followed: twice what
+/// robots take to search all channels.
+const RETURN_AFTER: Duration = Duration::millis(10_000);
+/// A host that leads robots sends every 17 ms.
+const STANDS_AFTER: Duration = Duration::millis(1_000);
 /// Longest time from a frame's first fragment to its last: a robot answers every 10 ms, and its 32 frames
 /// take half a second.
 const ASSEMBLY_TIME_MAX: Duration = Duration::millis(60);

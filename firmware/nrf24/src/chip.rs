@@ -4,9 +4,10 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorKind as PinError, OutputPin};
 use embedded_hal::spi::{ErrorKind as SpiError, SpiDevice};
 use protocol::frame::VERSION;
+use protocol::station::RadioPlan;
 use protocol::{Duration, RobotId, TeamId};
 use rf24::radio::prelude::{
-    EsbAutoAck, EsbDataRate, EsbFifo, EsbInit, EsbPayloadLength, EsbPipe, EsbRadio, EsbStatus,
+    EsbAutoAck, EsbChannel, EsbDataRate, EsbFifo, EsbInit, EsbPayloadLength, EsbPipe, EsbRadio, EsbStatus,
 };
 use rf24::radio::{Nrf24Error, RF24, RadioConfig};
 use rf24::{DataRate, StatusFlags};
@@ -43,9 +44,26 @@ pub struct Channel {
     pub megahertz: u8,
     /// Rate on the air.
     pub rate: Rate,
+    /// Upper bytes of all addresses, so that teams of one number do not take each other for their own.
+    pub address: u16,
 }
 
 impl Channel {
+    /// A team's place by its plan.
+    pub const fn of(team: TeamId, plan: RadioPlan) -> Self {
+        let rate = if plan.megabits == 1 { Rate::Mbps1 } else { Rate::Mbps2 };
+        Self { team, megahertz: plan.channel, rate, address: plan.address }
+    }
+
+    /// The plan that leads to it.
+    pub const fn plan(self) -> RadioPlan {
+        let megabits = match self.rate {
+            Rate::Mbps1 => 1,
+            Rate::Mbps2 => 2,
+        };
+        RadioPlan { channel: self.megahertz, megabits, address: self.address }
+    }
+
     /// The address of one robot.
     pub(crate) const fn robot(self, robot: RobotId) -> [u8; 5] {
         self.address(0x20 | robot.number())
@@ -56,10 +74,10 @@ impl Channel {
         self.address(0x71)
     }
 
-    /// Team and version are part of the address, so that no fragment of another one is ever joined. The upper
-    /// two bytes are arbitrary; PS 7.3.2 asks for many changes between 0 and 1.
+    /// Team and version are part of the address, so that no fragment of another one is ever joined.
     const fn address(self, low: u8) -> [u8; 5] {
-        [low, self.team.0, VERSION, 0xb4, 0x6d]
+        let [lower, upper] = self.address.to_le_bytes();
+        [low, self.team.0, VERSION, lower, upper]
     }
 }
 
@@ -110,19 +128,42 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Lines<S, C, D> {
             .with_auto_retries(REPEAT_DELAY, 0)
             .with_payload_length(PAYLOAD_MAX as u8);
         self.radio.with_config(&config)?;
-        let rate = match channel.rate {
+        // `with_config` of rf24-rs 0.3.1 drops the bit of 2 Mbit/s; this call does not, and the answer is
+        // read.
+        self.set_rate(channel.rate)?;
+        if !self.is_set()? {
+            return Err(Fault::Answer);
+        }
+        Ok(())
+    }
+
+    fn set_rate(&mut self, rate: Rate) -> Result<(), Fault> {
+        let rate = match rate {
             Rate::Mbps1 => DataRate::Mbps1,
             Rate::Mbps2 => DataRate::Mbps2,
         };
-        // `with_config` of rf24-rs 0.3.1 drops the bit of 2 Mbit/s; this call does not, and the answer is
-        // read.
         self.radio.set_data_rate(rate)?;
-        if self.radio.get_data_rate()? != rate || !self.is_set()? {
-            return Err(Fault::Answer);
-        }
         // It never waits for an acknowledgement of its own to end: no chip here changes its end.
         self.radio.tx_delay = 0;
-        Ok(())
+        if self.radio.get_data_rate()? == rate { Ok(()) } else { Err(Fault::Answer) }
+    }
+
+    /// Listens elsewhere from now on; what waits to be sent is dropped.
+    pub(crate) fn listen_on(&mut self, megahertz: u8, rate: Rate) -> Result<(), Fault> {
+        self.radio.as_tx(None)?;
+        self.radio.set_channel(megahertz)?;
+        self.set_rate(rate)?;
+        self.listen()
+    }
+
+    /// Whether there was power above -64 dBm since the chip listens (PS 6.4).
+    pub(crate) fn has_power(&mut self) -> Result<bool, Fault> {
+        Ok(self.radio.rpd()?)
+    }
+
+    /// Repeats of the packet that was sent last.
+    pub(crate) fn repeats(&mut self) -> Result<u8, Fault> {
+        Ok(self.radio.get_last_arc()?)
     }
 
     /// Returns whether the chip still has every setting: after a dip of its supply it has none, after an

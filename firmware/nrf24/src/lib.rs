@@ -20,6 +20,7 @@ mod base;
 mod chip;
 pub mod fragment;
 mod robot;
+mod scan;
 mod settings;
 mod station;
 

@@ -1,15 +1,16 @@
 //! `robot`: a robot's radio. It listens all the time, and what it has to say leaves in the chip's
-//! acknowledgements. Times in µs.
+//! acknowledgements. A base station that fell silent is searched for. Times in µs.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 use protocol::link::Packet;
+use protocol::station::{CHANNEL_MAX, CHANNEL_MIN};
 use protocol::{Duration, Instant, RobotId};
 use rf24::StatusFlags;
 use rf24::radio::prelude::{EsbAutoAck, EsbFifo, EsbStatus};
 
-use crate::chip::{CHECK_EVERY, Channel, Fault, Lines};
+use crate::chip::{CHECK_EVERY, Channel, Fault, Lines, Rate};
 use crate::fragment::{Assembler, Cutter, Fragments, Joined, NotSent};
 
 /// Counts of frames that a robot's radio dropped, by cause.
@@ -41,6 +42,10 @@ pub struct Robot<S, C, D> {
     /// Time of the last packet to this robot.
     asked: Instant,
     checked: Instant,
+    /// Time of the last packet of the base station, and where it came.
+    heard: (Instant, Channel),
+    /// Place in the search for a base station, and when it went there.
+    search: (u16, Instant),
     /// False while the chip is not set up to the end: its supply dipped in the middle of it.
     is_ready: bool,
     counts: RobotCounts,
@@ -68,6 +73,8 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
             given: 0,
             asked: now,
             checked: now,
+            heard: (now, channel),
+            search: (0, now),
             is_ready: false,
             counts: RobotCounts::default(),
         };
@@ -112,12 +119,39 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Robot<S, C, D> {
             if pipe == 1 {
                 self.asked = now;
             }
+            self.heard = (now, self.channel);
             if let Some(frame) = assembler.push(now, &payload) {
                 return Ok(Some(frame));
             }
         }
+        if now.since(self.heard.0) >= LOST_AFTER && now.since(self.search.1) >= DWELL_TIME {
+            self.search(now)?;
+        }
         self.answer(now)?;
         Ok(None)
+    }
+
+    /// The channel on which it listens.
+    pub fn channel(&self) -> Channel {
+        self.channel
+    }
+
+    /// Listens at the next place where the base station may be: in one of [`HOME_EVERY`] turns where it was
+    /// heard last, in the others on all channels at both rates, one after another.
+    fn search(&mut self, now: Instant) -> Result<(), Fault> {
+        let turn = self.search.0.wrapping_add(1);
+        self.search = (turn, now);
+        let elsewhere = turn.wrapping_sub(turn / HOME_EVERY + 1);
+        let place = elsewhere % (2 * CHANNELS);
+        let (megahertz, rate) = if turn.is_multiple_of(HOME_EVERY) {
+            (self.heard.1.megahertz, self.heard.1.rate)
+        } else {
+            let rate = if place < CHANNELS { Rate::Mbps2 } else { Rate::Mbps1 };
+            (CHANNEL_MIN + (place % CHANNELS) as u8, rate)
+        };
+        self.channel = Channel { megahertz, rate, ..self.channel };
+        self.given = 0;
+        self.lines.listen_on(megahertz, rate)
     }
 
     /// Counts since the start.
@@ -165,6 +199,15 @@ pub const SERVE_EVERY: Duration = Duration::millis(1);
 /// Longest wait of a beacon or telemetry: two of a robot's telemetry periods, after which a newer one is
 /// there.
 const WAIT_MAX: Duration = Duration::millis(100);
+/// Silence of the base station after which a robot searches for it: four times the longest that a reset of a
+/// chip or a loss of 30 % costs, and above the 320 ms in which a base station asks for every number.
+const LOST_AFTER: Duration = Duration::millis(400);
+/// Time at one place of the search: a base station with a host sends a snapshot every 17 ms at least.
+const DWELL_TIME: Duration = Duration::millis(20);
+/// Turns of the search of which one is where the base station was heard last.
+const HOME_EVERY: u16 = 4;
+/// Channels of the search.
+const CHANNELS: u16 = (CHANNEL_MAX - CHANNEL_MIN + 1) as u16;
 /// Own frames that wait: a beacon, telemetry, a handshake and a part of a decision.
 const WAITING_MAX: usize = 4;
 /// Longest time from a frame's first fragment to its last: four with every repeat take 6 ms; and the base

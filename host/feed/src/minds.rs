@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use host::Host;
 use host::world::Robot;
-use page::{Intent, LinkWindow, RobotDetail, Timer, Vitals, milli};
+use page::{AirCounts, Intent, LinkWindow, RobotDetail, Timer, Vitals, milli};
 use protocol::host::Condition;
+use protocol::station::StationReport;
 use protocol::team::{Progress, Role, Status};
 use protocol::{Instant, RobotId};
 use rules::{Colour, RuleRole};
@@ -109,6 +110,14 @@ pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant, link: LinkWindow)
         loss_up: counters(quality.loss_up()),
         frames: counters(quality.frame_rate().mean()),
         link,
+        air: quality.station().map(|StationReport { plan, packets, .. }| AirCounts {
+            channel: plan.channel,
+            megabits: plan.megabits,
+            sent: packets.sent,
+            acknowledged: packets.acknowledged,
+            repeats: packets.repeats,
+            lost: packets.lost,
+        }),
         telemetry_ms: quality.telemetry().map(|(at, _)| ms(now.since(*at).0)),
         governed: condition.has(Condition::GOVERNED),
         refused: quality.refused(),

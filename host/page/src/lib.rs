@@ -50,8 +50,8 @@ pub use problem::problem;
 pub use program_log::{LogEntry, LogLevel, ProgramLog};
 pub use request::{PageTeam, Powers, Refused, UserRequest};
 pub use scene::{
-    CameraNote, Cycle, Field, Gauge, Intent, LinkWindow, Match, MatchEnd, PerTeam, Raw, RobotDetail, Scene,
-    SceneBall, SceneRobot, TeamSheet, Timer, Vitals, Windowed,
+    AirCounts, CameraNote, Cycle, Field, Gauge, Intent, LinkWindow, Match, MatchEnd, PerTeam, Raw,
+    RobotDetail, Scene, SceneBall, SceneRobot, TeamSheet, Timer, Vitals, Windowed,
 };
 pub use settings::{ExplanationService, PageSettings};
 pub use shape::{Heat, Layer, Shape, Tone};

@@ -197,6 +197,9 @@ pub struct Vitals {
     /// Over the last second, each with the worst such second within ten.
     #[serde(default)]
     pub link: LinkWindow,
+    /// Packets that its base station sent to it; `None` without one that counts them.
+    #[serde(default)]
+    pub air: Option<AirCounts>,
     /// Since its last telemetry was received, ms.
     #[serde(default)]
     pub telemetry_ms: Option<f32>,
@@ -220,6 +223,23 @@ pub struct Vitals {
 /// A value over the last second, and the worst value over a second within the last ten; each `None` while
 /// nothing was measured.
 pub type Windowed = [Option<f32>; 2];
+
+/// Packets of a base station to one robot since the base station's start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AirCounts {
+    /// Channel, MHz above 2,400.
+    pub channel: u8,
+    /// Rate on the air, Mbit/s.
+    pub megabits: u8,
+    /// Packets sent.
+    pub sent: u32,
+    /// Of those, acknowledged.
+    pub acknowledged: u32,
+    /// Repeats of them.
+    pub repeats: u32,
+    /// Not acknowledged in any repeat.
+    pub lost: u32,
+}
 
 /// A robot's link over windows of 1 s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -66,7 +66,21 @@ function vitals(robots) {
     el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "robot"), el("th", { scope: "col", title: "faults, else what it does; below it the kicker's capacitor" }, "state"), head("RTT", "mean round-trip time of the radio, ms"), head("loss ↓", "frames lost on the way to the robot, %"), head("↑ %", "frames lost on the way from it, %"),
       head("fr/s", "frames received a second"), head("tel/s", "telemetry received a second"), head("kbit/s", "frames of both directions"), head("report", "since its last telemetry, ms"))),
     el("tbody", {}, rows))),
-    el("p", { class: "muted" }, "RTT to kbit/s: over 1 s, below it the worst such second within 10 s. report: ms since its telemetry. Capacitor voltage and temperatures: not reported, telemetry has no field for them.")];
+    el("p", { class: "muted" }, "RTT to kbit/s: over 1 s, below it the worst such second within 10 s. report: ms since its telemetry. Capacitor voltage and temperatures: not reported, telemetry has no field for them."),
+    ...packets(robots.filter(({ vitals: v }) => v.air))];
+}
+
+/** Packets of a base station that counts them, a row a robot. */
+function packets(robots) {
+  if (robots.length === 0) return [];
+  const share = (part, all) => el("td", { class: `n${part > 0.1 * all ? " bad" : ""}` }, all ? number((100 * part) / all, 1) : "–");
+  const rows = robots.map(({ team, id, vitals: { air } }) => el("tr", {}, el("td", {}, `${team} ${id}`),
+    el("td", { class: "n" }, String(air.channel)), el("td", { class: "n" }, String(air.megabits)), el("td", { class: "n" }, String(air.sent)),
+    el("td", { class: "n" }, String(air.acknowledged)), el("td", { class: "n" }, String(air.repeats)), el("td", { class: "n" }, String(air.lost)), share(air.lost, air.sent)));
+  return [scroll("Packets of the base station", el("table", { class: "tight" },
+    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "robot"), head("channel", "MHz above 2400"), head("Mbit/s", "rate on the air"), head("sent", "packets to the robot since the base station's start"),
+      head("acked", "acknowledged by the robot's chip"), head("repeats", "repeats of packets"), head("lost", "not acknowledged in any repeat"), head("lost %", "of those sent"))),
+    el("tbody", {}, rows)))];
 }
 
 function cameras(list) {

@@ -8,7 +8,7 @@ use toml::Value;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table};
 
 use super::parameters::{ACCELERATION, PARAMETERS, Parameter, SPEED};
-use super::{ConfigError, DriveSettings, TeamConfig, TeamSettings, error};
+use super::{ConfigError, TeamConfig, TeamSettings, error};
 use crate::HostSettings;
 
 /// Longest part of an unknown key that is told, characters.
@@ -167,6 +167,16 @@ impl TeamConfig {
         settings.tactics = self.tactics;
         settings.practice = self.practice;
     }
+}
+
+/// Limits of our robots' motion; their own limits hold where they are stricter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DriveSettings {
+    /// Greatest speed of our robots, m/s.
+    pub speed: Option<f32>,
+    /// Greatest acceleration of our robots, m/s².
+    pub acceleration: Option<f32>,
 }
 
 impl DriveSettings {

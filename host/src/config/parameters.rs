@@ -252,8 +252,29 @@ pub(super) const ACCELERATION: Parameter = Parameter {
     value: Holds::Once(|config| config.limits.acceleration.map(decimal)),
 };
 
+/// Channel of a base station; the range is that of [`protocol::station::RadioPlan`].
+pub(super) const CHANNEL: Parameter = Parameter {
+    range: Some(2.0..=80.0),
+    unit: "MHz above 2400",
+    ..optional(
+        "radio.channel",
+        "where a base station and its robots are on the air",
+        ("by the team's number", "40"),
+        |c| c.air.channel.map(|channel| Value::from(i64::from(channel))),
+    )
+};
+
+/// Rate of a base station on the air.
+pub(super) const AIR_RATE: Parameter = Parameter {
+    range: Some(1.0..=2.0),
+    unit: "Mbit/s",
+    ..optional("radio.rate", "rate of a base station on the air", ("2", "1"), |c| {
+        c.air.rate.map(|rate| Value::from(i64::from(rate)))
+    })
+};
+
 /// Every parameter, in the order of the file: those of no table first.
-pub const PARAMETERS: [Parameter; 25] = [
+pub const PARAMETERS: [Parameter; 27] = [
     usual("name", "as the game controller knows the team", |c| Some(text_of(&c.name))),
     usual("colour", "blue or yellow", |c| Some(text_of(&c.colour.label()))),
     usual("league", "ssl-2013, division-b or division-a", |c| Some(text_of(&c.league.name()))),
@@ -314,6 +335,8 @@ pub const PARAMETERS: [Parameter; 25] = [
     ROLL,
     SPEED,
     ACCELERATION,
+    CHANNEL,
+    AIR_RATE,
     practice(
         "practice.within",
         "played in: half +x, -x, +y or -y, or X,Y,X,Y in mm; what is seen beyond is ignored",

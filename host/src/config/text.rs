@@ -101,7 +101,7 @@ mod tests {
                    robots = 'serial:COM3:115200'\nkey_file = 'a b.key'\ninsecure_zero_key = true\nvision = '127.0.0.1:1'\n\
                    referee = '127.0.0.1:2'\nreferee_source = 'gc'\nreferee_silence = 'go-on'\ntracker = '127.0.0.1:3'\ntracker_in = '127.0.0.1:5,a b'\n\
                    game_controller = '127.0.0.1:4'\nstrategy = 'python3 \"x y.py\"'\ntactics = 'threats,rated'\n[ball]\nroll = 0.41\n\
-                   [limits]\nspeed = 1.7\nacceleration = 2.3\n[practice]\nwithin = '-x'\nwithout = '0,0,9,9'\ncameras = '1,4'\n\
+                   [limits]\nspeed = 1.7\nacceleration = 2.3\n[radio]\nchannel = 40\nrate = 1\n[practice]\nwithin = '-x'\nwithout = '0,0,9,9'\ncameras = '1,4'\n\
                    [[calibration]]\nrobot = 3\nkick = 1.06\n[[calibration]]\nrobot = 15\nkick = 0.9\n\
                    [[numbers]]\nrobot = 4\nradio = 0\n";
         for text in ["", set, "robots = 'udp://10.0.0.2:10'"] {

@@ -31,6 +31,7 @@ use protocol::host::{DriveLimits, HostCommand, HostMessage, PARTS_MAX, Telemetry
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
 use protocol::parts::PartsReport;
+use protocol::station::{self, StationMessage, StationReport};
 use protocol::team::{Beacon, TeamMessage};
 use protocol::version::VersionReport;
 use protocol::{Duration, Instant, RobotId, TeamId};
@@ -132,6 +133,8 @@ pub enum RadioReceived {
     Version(RobotId, VersionReport),
     /// Which of its parts work, to the host.
     Parts(RobotId, PartsReport),
+    /// Packets that the base station sent to a robot.
+    Station(RobotId, StationReport),
 }
 
 /// The host's radio: queue of frames, links to robots, refusals.
@@ -238,6 +241,10 @@ impl Radio {
 
     /// Handles a packet of a robot: returns its message, or why it is refused (counted).
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) -> Result<RadioReceived, Refusal> {
+        if let Some(StationMessage::Report(report)) = station::read(packet) {
+            self.robots[report.robot.index()].report_station(report);
+            return Ok(RadioReceived::Station(self.settings.numbers.shell(report.robot), report));
+        }
         let frame = Frame::parse(packet, self.settings.team);
         let opened = self.link.open(now, packet);
         if let Err(refusal) = opened {

@@ -15,6 +15,7 @@ use std::fmt::Write as _;
 
 use protocol::host::{Condition, Telemetry};
 use protocol::parts::PartsReport;
+use protocol::station::StationReport;
 use protocol::version::VersionReport;
 use protocol::{Duration, Instant, RobotId};
 
@@ -38,6 +39,7 @@ pub struct Quality {
     lives: u32,
     version: Option<VersionReport>,
     parts: PartsReport,
+    station: Option<StationReport>,
     trip: Counters,
     down: Share,
     up: Share,
@@ -170,6 +172,16 @@ impl Quality {
     /// Which of its parts work, as it has reported since it booted last; all where it reported none.
     pub fn parts(&self) -> PartsReport {
         self.parts
+    }
+
+    /// Packets that its base station sent to it, and on which channel; none without a base station that
+    /// counts them.
+    pub fn station(&self) -> Option<StationReport> {
+        self.station
+    }
+
+    pub(super) fn report_station(&mut self, report: StationReport) {
+        self.station = Some(report);
     }
 
     pub(super) fn report_parts(&mut self, report: PartsReport) {

@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use casebase::CaseBase;
-use protocol::{Instant, RobotId};
+use protocol::{Instant, RobotId, TeamId};
 use rules::Colour;
 use ssl::net::{addresses, resolve_destination};
 
@@ -168,7 +168,8 @@ fn open_link(settings: &RunSettings<'_>, key: protocol::frame::TeamKey) -> Resul
         key,
         more: settings.virtual_robots.arguments.clone(),
     };
-    Ok(crate::shell::open(&config.robots, start)?)
+    let team = TeamId::of(config.colour);
+    Ok(crate::shell::open(&config.robots, (team, config.air.plan(team, key)), start)?)
 }
 
 /// Address where a simulator takes a team's commands: `HOST[:PORT]` names its control port.

@@ -16,7 +16,9 @@ mod udp;
 
 use std::time::Duration;
 
+use protocol::TeamId;
 use protocol::link::Packet;
+use protocol::station::RadioPlan;
 
 use crate::config::RobotLink;
 use crate::radio::{Relay, To};
@@ -82,11 +84,16 @@ impl LineRate {
     }
 }
 
-/// Opens the link that `settings` name; virtual robots are started with the settings of `sim`.
-pub fn open(link: &RobotLink, sim: impl FnOnce(&str) -> SimSettings) -> Result<Box<dyn Link>, LinkError> {
+/// Opens the link that `settings` name; virtual robots are started with the settings of `sim`, a base station
+/// is told its team's plan.
+pub fn open(
+    link: &RobotLink,
+    (team, plan): (TeamId, RadioPlan),
+    sim: impl FnOnce(&str) -> SimSettings,
+) -> Result<Box<dyn Link>, LinkError> {
     Ok(match link {
         RobotLink::Udp(address) => Box::new(UdpLink::open(address)?),
-        RobotLink::Serial { device, baud } => Box::new(SerialLink::open(device, *baud)?),
+        RobotLink::Serial { device, baud } => Box::new(SerialLink::open(device, *baud)?.planned(team, plan)),
         RobotLink::Simulator(host) => Box::new(SimLink::start(sim(host))?),
     })
 }

@@ -8,8 +8,10 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use protocol::TeamId;
 use protocol::link::Packet;
 use protocol::serial::{Lines, line};
+use protocol::station::{self, RadioPlan, StationMessage};
 use serial2::SerialPort;
 
 use super::{LineRate, Link, LinkError};
@@ -23,6 +25,10 @@ const WRITE_MAX: Duration = Duration::from_millis(10);
 const BUFFERED_TIME: Duration = Duration::from_millis(3);
 /// Interval of reports that the line takes less than its rate.
 const STUCK_REPORT_EVERY: Duration = Duration::from_secs(10);
+/// Interval at which the base station is told its place on the air, and reports its counts.
+const PLAN_EVERY: Duration = Duration::from_secs(1);
+/// Time after which a base station that does not answer is reported.
+const ANSWER_WITHIN: Duration = Duration::from_secs(5);
 /// Bytes taken from the system at once.
 const READ_LEN: usize = 1024;
 
@@ -42,6 +48,66 @@ pub struct SerialLink {
     busy_until: Instant,
     /// Number of writes without room, and when that was last reported.
     stuck: (u32, Option<Instant>),
+    planned: Planned,
+}
+
+/// What the base station is told of the air, and what it has answered.
+#[derive(Debug, Default)]
+struct Planned {
+    plan: Option<(TeamId, RadioPlan)>,
+    /// When it was told first, and last.
+    told: Option<(Instant, Instant)>,
+    /// The plan that it follows, by its newest report.
+    follows: Option<RadioPlan>,
+    /// What was last said of it to the operator.
+    said: Option<Said>,
+}
+
+/// A difference between the plan and the base station.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Said {
+    NoAnswer,
+    Elsewhere(RadioPlan),
+}
+
+impl Planned {
+    /// The line that tells the plan, if it is due.
+    fn due(&mut self) -> Option<Packet> {
+        let (team, plan) = self.plan?;
+        let now = Instant::now();
+        if self.told.is_some_and(|(_, last)| now.duration_since(last) < PLAN_EVERY) {
+            return None;
+        }
+        self.told = Some((self.told.map_or(now, |(first, _)| first), now));
+        Some(station::packet(&StationMessage::Plan(team, plan)))
+    }
+
+    /// What the operator should know, each once.
+    fn notice(&mut self, device: &str) -> Option<String> {
+        let (_, plan) = self.plan?;
+        let (first, _) = self.told?;
+        let said = match self.follows {
+            Some(follows) if follows == plan => None,
+            Some(follows) => Some(Said::Elsewhere(follows)),
+            None if first.elapsed() < ANSWER_WITHIN => return None,
+            None => Some(Said::NoAnswer),
+        };
+        if said == self.said {
+            return None;
+        }
+        self.said = said;
+        Some(match said? {
+            Said::NoAnswer => format!(
+                "{device}: the base station does not answer to radio settings: its image is of before 0.3, so that it is on its team's \
+                 default channel, and robots of this release do not hear it; flash it anew, or check the line"
+            ),
+            Said::Elsewhere(follows) => format!(
+                "{device}: the base station is on channel {} at {} Mbit/s, not on {} at {}: no robot followed it there; are they on, \
+                 and is that channel free (onetwo robot scan)?",
+                follows.channel, follows.megabits, plan.channel, plan.megabits
+            ),
+        })
+    }
 }
 
 impl SerialLink {
@@ -62,7 +128,19 @@ impl SerialLink {
             baud,
             busy_until: Instant::now(),
             stuck: (0, None),
+            planned: Planned::default(),
         }
+    }
+
+    /// Tells the base station from now on where its team is on the air.
+    #[must_use]
+    pub fn planned(mut self, team: TeamId, plan: RadioPlan) -> Self {
+        self.planned.plan = Some((team, plan));
+        self
+    }
+
+    fn tell_plan(&mut self) -> Result<(), LinkError> {
+        self.planned.due().map_or(Ok(()), |packet| self.send(To::All, &packet))
     }
 
     /// Accounts for `bytes` more to send.
@@ -80,6 +158,9 @@ impl SerialLink {
             lines.push(*byte)
         });
         read.drain(..taken);
+        if let Some(StationMessage::Report(report)) = found.as_deref().and_then(station::read) {
+            self.planned.follows = Some(report.plan);
+        }
         found
     }
 }
@@ -112,6 +193,7 @@ impl Link for SerialLink {
             doing: "read from".into(),
             error,
         };
+        self.tell_plan()?;
         let until = Instant::now() + wait;
         loop {
             if let Some(packet) = self.take() {
@@ -155,6 +237,9 @@ impl Link for SerialLink {
     }
 
     fn notice(&mut self) -> Option<String> {
+        if let Some(notice) = self.planned.notice(&self.device) {
+            return Some(notice);
+        }
         let (stuck, reported) = self.stuck;
         if stuck == 0 || reported.is_some_and(|at| at.elapsed() < STUCK_REPORT_EVERY) {
             return None;
@@ -228,6 +313,30 @@ mod tests {
             received.extend(bytes[..len].iter().filter_map(|byte| lines.push(*byte)));
         }
         assert_eq!(received, [frame.clone(), frame]);
+    }
+
+    #[test]
+    fn a_base_station_is_told_its_plan_and_what_it_does_else_is_said_once() {
+        let (mut station, link) = pair();
+        let plan = RadioPlan { channel: 40, megabits: 2, address: 7 };
+        let mut link = link.planned(TeamId(2), plan);
+        station.set_read_timeout(SECOND).unwrap();
+        assert_eq!(link.receive(Duration::from_millis(1)).unwrap(), None);
+        let (mut bytes, mut lines) = ([0; 64], Lines::new());
+        let len = station.read(&mut bytes).unwrap();
+        let told =
+            bytes[..len].iter().find_map(|byte| lines.push(*byte)).and_then(|line| station::read(&line));
+        assert_eq!(told, Some(StationMessage::Plan(TeamId(2), plan)));
+        for (channel, expected) in [(6, true), (6, false), (40, false), (6, true)] {
+            let plan = RadioPlan { channel, ..plan };
+            let (robot, packets) = (protocol::RobotId::ZERO, station::PacketCounts::default());
+            let report = station::StationReport { plan, restarts: 0, robot, packets };
+            station.write_all(&line(&station::packet(&StationMessage::Report(report)))).unwrap();
+            assert!(link.receive(SECOND).unwrap().is_some());
+            let notice = link.notice();
+            assert_eq!(notice.is_some(), expected, "{channel}: {notice:?}");
+            assert!(notice.is_none_or(|text| text.contains("is on channel 6 at 2 Mbit/s, not on 40")));
+        }
     }
 
     #[test]

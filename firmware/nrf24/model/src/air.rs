@@ -47,6 +47,7 @@ impl Air {
             chips: Vec::new(),
             flights: Vec::new(),
             copies: Vec::new(),
+            carriers: Vec::new(),
             faults,
             dice: Xoshiro128PlusPlus::seed_from_u64(seed),
             counts: AirCounts::default(),
@@ -70,6 +71,11 @@ impl Air {
         self.0.borrow_mut().advance(until);
     }
 
+    /// A carrier of something else on that channel, on for this share of the time.
+    pub fn carrier(&self, channel: u8, share: f32) {
+        self.0.borrow_mut().carriers.push((channel, share));
+    }
+
     /// What was on the air so far.
     pub fn counts(&self) -> AirCounts {
         self.0.borrow().counts
@@ -83,6 +89,8 @@ pub(crate) struct Medium {
     flights: Vec<Flight>,
     /// Copies that come at that time, to that chip.
     copies: Vec<(u64, usize, Flight)>,
+    /// Channels with a carrier, and its share of the time.
+    carriers: Vec<(u8, f32)>,
     faults: Faults,
     dice: Xoshiro128PlusPlus,
     counts: AirCounts,
@@ -112,6 +120,20 @@ impl Medium {
         let (enabled, spent) = (chip.enabled, chip.spent);
         *chip = Registers::new();
         (chip.enabled, chip.spent, chip.has_supply) = (enabled, spent, on);
+    }
+
+    /// Sets whether a chip that listens notices power, which takes it 40 us (PS 6.4).
+    pub(crate) fn sense(&mut self, index: usize) {
+        let chip = &self.chips[index];
+        let Mode::Listening { since } = chip.mode else { return };
+        if self.now < since + 40_000 {
+            return;
+        }
+        let channel = chip.channel();
+        let share = self.carriers.iter().find(|(of, _)| *of == channel).map_or(0.0, |(_, share)| *share);
+        let is_busy = self.flights.iter().any(|flight| flight.channel == channel);
+        let is_there = is_busy || self.happens(share);
+        self.chips[index].set_power(is_there);
     }
 
     /// Looks at a chip whose registers or lines changed.

@@ -141,6 +141,11 @@ impl Registers {
         self.bytes[usize::from(STATUS)] & EVENTS | pipe << 1 | full
     }
 
+    /// Sets the register RPD.
+    pub(crate) fn set_power(&mut self, is_there: bool) {
+        self.bytes[0x09] = u8::from(is_there);
+    }
+
     pub(crate) fn raise(&mut self, event: u8) {
         self.bytes[usize::from(STATUS)] |= event;
     }

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | registers, FIFOs of three, both ends of a packet with acknowledgement, retransmission, packet identity | addresses of 3 or 4 bytes, start of the crystal (1.5 ms), carrier test |
 //! | settling of 130 µs before every packet, length of packets on the air at 1 and 2 Mbit/s | field strength: two packets at once on a channel are both lost to everyone |
-//! | loss, damage that passes the check sum, copies that come again later | neighbouring channels |
+//! | loss, damage that passes the check sum, copies that come again later, carriers of others for the power register | neighbouring channels |
 //!
 //! SPI transfers take no time of the air; [`Chip::take_spent`] gives what they would have taken, and a test
 //! that runs the processors lets each wait that long.

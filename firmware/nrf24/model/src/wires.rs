@@ -38,6 +38,7 @@ impl digital::ErrorType for ChipEnable {
 impl SpiDevice for Spi {
     fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
         let mut medium = self.0.medium.borrow_mut();
+        medium.sense(self.0.index);
         let chip = &mut medium.chips[self.0.index];
         let mut exchange = Exchange::default();
         chip.spent += TRANSACTION;

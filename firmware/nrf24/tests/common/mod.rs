@@ -2,6 +2,8 @@
 //! µs.
 #![allow(dead_code, reason = "the table and each test use a part")]
 
+pub(crate) mod channels;
+
 use std::collections::{BTreeMap, HashMap};
 
 use embedded_hal::spi::SpiDevice;
@@ -9,6 +11,7 @@ use nrf24::{Base, Channel, Rate, Robot, Station};
 use nrf24_model::{Air, AirCounts, Chip, ChipEnable, Faults, Pause, Spi};
 use protocol::frame::{Audience, Frame, Sender, Sessions, TeamKey};
 use protocol::serial::{Lines, line};
+use protocol::station::{self, StationMessage};
 use protocol::{Instant, RobotId, TeamId};
 
 /// What is simulated.
@@ -156,6 +159,8 @@ struct Believer {
     handed: HashMap<Vec<u8>, u32>,
     believed: HashMap<Vec<u8>, u32>,
     heard_host: u64,
+    /// Times of frames of the host that were believed.
+    host_times: Vec<u64>,
 }
 
 struct Team {
@@ -172,18 +177,22 @@ struct Team {
     sent: HashMap<Vec<u8>, (Kind, u64)>,
     news: Vec<bool>,
     station_news: bool,
+    /// Messages of the base station itself.
+    answers: Vec<StationMessage>,
     /// Time of the last frame believed, of each robot from the host and of the host from each robot, µs.
     heard: [[u64; ROBOTS as usize]; 2],
 }
 
 const KEY: TeamKey = TeamKey([7, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
 const STEP: u64 = 10;
+/// Not the default: that of some team's key.
+pub(crate) const ADDRESS: u16 = 0x9c35;
 
 impl Team {
     fn new(air: &Air, number: u8, plan: &Plan) -> Self {
         let id = TeamId(number + 1);
         let megahertz = if plan.same_channel { 76 } else { 76 + 4 * number };
-        let channel = Channel { team: id, megahertz, rate: plan.rate };
+        let channel = Channel { team: id, megahertz, rate: plan.rate, address: ADDRESS };
         let chip = air.chip();
         let base = Base::start(Instant(0), channel, chip.spi(), chip.chip_enable(), chip.pause()).unwrap();
         chip.take_spent();
@@ -210,6 +219,7 @@ impl Team {
             sent: HashMap::new(),
             news: vec![false; usize::from(ROBOTS)],
             station_news: false,
+            answers: Vec::new(),
             heard: [[WARM_UP; ROBOTS as usize]; 2],
         }
     }
@@ -288,7 +298,7 @@ pub(crate) fn run(plan: &Plan) -> Outcome {
     outcome
 }
 
-const WARM_UP: u64 = 500_000;
+pub(crate) const WARM_UP: u64 = 500_000;
 /// What is sent last may still be under way.
 const COOL_DOWN: u64 = 200_000;
 
@@ -361,6 +371,10 @@ fn serve(team: &mut Team, now: u64, outcome: &mut Outcome) {
         team.station_news = line.is_some();
         let frames: Vec<_> = line.iter().flatten().filter_map(|byte| team.host_line.push(*byte)).collect();
         for frame in frames {
+            if let Some(message) = station::read(&frame) {
+                team.answers.push(message);
+                continue;
+            }
             let key = |sender: RobotId| KEY.of_robot(sender).team;
             if believe(&mut team.at_host, &frame, team.id, key, RobotId::ZERO, outcome) {
                 settle(&team.sent, &frame, now, outcome);
@@ -394,6 +408,7 @@ fn serve(team: &mut Team, now: u64, outcome: &mut Outcome) {
                         outcome.longest_silence.max(now - believer.heard_host.max(WARM_UP));
                 }
                 believer.heard_host = now;
+                believer.host_times.push(now);
                 hear(&mut team.heard[0], number, now, &mut outcome.longest_gap[0]);
             }
             settle(&team.sent, &frame, now, outcome);

@@ -7,6 +7,7 @@ mod calibrate;
 mod derived;
 mod fit;
 mod measurements;
+mod scan;
 mod show;
 
 use std::fmt::Write as _;
@@ -31,6 +32,9 @@ pub(crate) enum RobotVerb {
     /// Show the checks of a robot's first start as its image bring_up tells them by radio. Exit 1 if one
     /// failed.
     BringUp(bring_up::BringUpArgs),
+    /// Measure the power on the radio's channels with a base station, while no host speaks: a table, a plot,
+    /// and the quietest channels.
+    Scan(scan::ScanArgs),
 }
 
 /// Arguments of `robot check`.
@@ -50,6 +54,7 @@ pub(crate) fn run(verb: &RobotVerb) -> Result<ExitCode, Failure> {
         RobotVerb::Show(args) => show::run(args)?,
         RobotVerb::Calibrate(args) => calibrate::run(args)?,
         RobotVerb::BringUp(args) => return bring_up::run(args),
+        RobotVerb::Scan(args) => scan::run(args)?,
     }
     Ok(ExitCode::SUCCESS)
 }

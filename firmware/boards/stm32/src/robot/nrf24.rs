@@ -1,4 +1,4 @@
-//! `nrf24`: the robot's radio: a chip nRF24L01+ on its bus, on its team's channel.
+//! `nrf24`: the robot's radio: a chip nRF24L01+ on its bus.
 
 use board_kit::nrf24;
 use board_kit::robot::Identity;
@@ -12,6 +12,6 @@ pub(crate) type Receiver = lines::RadioChipReceiver;
 
 /// Both directions; `None`, and the reason on the log, where the chip does not answer.
 pub(crate) fn open(who: &Identity, _line: pins::Radio, chip: pins::Chip) -> Option<(Sender, Receiver)> {
-    let opened = nrf24::robot(who.config.team, who.config.robot, drivers::radio_chip(chip));
+    let opened = nrf24::robot(who, drivers::radio_chip(chip));
     opened.inspect_err(|_| defmt::error!("the radio chip does not answer: check its supply and wiring")).ok()
 }
