@@ -223,7 +223,7 @@ impl Coach {
         let receives = |id| !defenders.contains(&Some(id));
         let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who);
         let may = |id| id == who || plan.free.contains(&id) && id != view.keeper && receives(id);
-        let retrieved = (self.tactics.bridge && may_play_on && !view.in_play.has(who))
+        let retrieved = (self.tactics.bridge && !view.in_play.has(who))
             .then(|| case_candidate::retrieve(view, &self.open_play.rated.cases, who, from, may))
             .flatten();
         let of_cases = OfCases { pass, retrieved };
