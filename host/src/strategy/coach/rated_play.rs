@@ -379,7 +379,7 @@ mod tests {
                 seen.knows_cases.insert(robot.id);
             }
             coach.decide(&seen);
-            seen.now = seen.now + Duration::millis(300);
+            seen.now += Duration::millis(300);
             let orders = coach.decide(&seen);
             let by_themselves = |order: &&Order| matches!(order.task, Task::Case(_) | Task::Gameplay);
             assert_eq!(orders.iter().find(by_themselves), None, "situation {situation}");
