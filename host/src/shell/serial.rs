@@ -98,8 +98,8 @@ impl Planned {
         self.said = said;
         Some(match said? {
             Said::NoAnswer => format!(
-                "{device}: the base station does not answer to radio settings: its image is of before 0.3, so that it is on its team's \
-                 default channel, and robots of this release do not hear it; flash it anew, or check the line"
+                "{device}: the base station does not answer to radio settings: its image is of before 0.2, so that it is on its team's \
+                 default channel, and robots of this release do not hear it; flash it again, or check the line"
             ),
             Said::Elsewhere(follows) => format!(
                 "{device}: the base station is on channel {} at {} Mbit/s, not on {} at {}: no robot followed it there; are they on, \

@@ -13,13 +13,14 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use host::config::RobotLink;
+use host::config::{AirSettings, RobotLink};
 use host::radio::To;
 use host::run::{PublicKey, real_epoch};
 use host::shell::{Link, SerialLink, UdpLink, key};
 use protocol::frame::TeamKey;
 use protocol::host::{HostMessage, WorldPart};
 use protocol::host_link::HostLink;
+use protocol::station::RadioPlan;
 use protocol::{RobotId, TeamId};
 use rules::Phase;
 
@@ -68,7 +69,7 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
         return Err(PublicKey { link: args.robots.clone(), file: Some(args.key_file.clone()) }.into());
     }
     let stopped = stopped_by_hand();
-    let mut link = open(&robots)?;
+    let mut link = open(&robots, (args.team, AirSettings::default().plan(args.team, read.key)))?;
     let epoch = real_epoch();
     if let Some(warning) = &epoch.warning {
         note!("warning: {warning}");
@@ -122,10 +123,10 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
     Ok(signal().map_or(ExitCode::FAILURE, |(_, code)| code))
 }
 
-fn open(robots: &RobotLink) -> Result<Box<dyn Link>, Failure> {
+fn open(robots: &RobotLink, (team, plan): (TeamId, RadioPlan)) -> Result<Box<dyn Link>, Failure> {
     Ok(match robots {
         RobotLink::Udp(address) => Box::new(UdpLink::open(address)?),
-        RobotLink::Serial { device, baud } => Box::new(SerialLink::open(device, *baud)?),
+        RobotLink::Serial { device, baud } => Box::new(SerialLink::open(device, *baud)?.planned(team, plan)),
         RobotLink::Simulator(_) => return Err(BringUpError::Simulator.into()),
     })
 }
