@@ -13,6 +13,7 @@ use protocol::host_link::HostLink;
 use protocol::link::{Link, Received, overhear, overhear_host};
 use protocol::lockstep::{FromRobot, ToRobot};
 use protocol::serial::{Lines, line as stuffed};
+use protocol::station::{self, StationMessage};
 use protocol::team::TeamMessage;
 use protocol::{Instant, RobotId, TeamId};
 use serde::Serialize;
@@ -24,11 +25,12 @@ use ssl::stream::FrameReader;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All fuzz targets, one a kind of input.
-pub const TARGETS: [Target; 6] = [
+pub const TARGETS: [Target; 7] = [
     ("frame", frame),
     ("line", line),
     ("team", team),
     ("host", host),
+    ("station", station),
     ("lockstep", lockstep),
     ("ssl", league),
 ];
@@ -88,6 +90,14 @@ pub fn team(bytes: &[u8]) {
 pub fn host(bytes: &[u8]) {
     if let Some(message) = same_again::<HostMessage>(bytes) {
         let _sound = message.is_sound();
+    }
+}
+
+/// Target: a message between host and base station, as it is and with its check.
+pub fn station(bytes: &[u8]) {
+    let _message = same_again::<StationMessage>(bytes);
+    if let Some(message) = station::read(bytes) {
+        assert_eq!(station::read(&station::packet(&message)).as_ref(), Some(&message));
     }
 }
 
