@@ -153,7 +153,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
     }
 
     /// Goes to another channel; its robots find it there. If it had robots and none follows within
-    /// [`RETURN_AFTER`], it goes back, and stays until it is told a third channel.
+    /// ten seconds, it goes back, and stays until it is told a third channel.
     pub fn tune(&mut self, now: Instant, channel: Channel) {
         if channel == self.channel || Some(channel) == self.failed {
             return;
@@ -179,7 +179,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
         self.channel
     }
 
-    /// Starts to measure the power on all channels; false where a host's frame came within [`STANDS_AFTER`]:
+    /// Starts to measure the power on all channels; false where a host's frame came within a second:
     /// robots play, and would brake. A frame that comes meanwhile ends it.
     pub fn scan(&mut self, now: Instant, sweeps: u8) -> bool {
         if self.commanded.is_some_and(|last| now.since(last) < STANDS_AFTER) || sweeps == 0 {
