@@ -27,7 +27,7 @@ pub const CHANNEL_MIN: u8 = 2;
 pub const CHANNEL_MAX: u8 = 80;
 /// Channels that a scan measures, from 0 on.
 pub const SCANNED: usize = 84;
-/// Address of base stations that were told none.
+/// Address of base stations without a plan.
 pub const ADDRESS_DEFAULT: u16 = 0x6db4;
 
 impl RadioPlan {

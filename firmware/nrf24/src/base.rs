@@ -153,7 +153,7 @@ impl<S: SpiDevice, C: OutputPin, D: DelayNs> Base<S, C, D> {
     }
 
     /// Goes to another channel; its robots find it there. If it had robots and none follows within
-    /// ten seconds, it goes back, and stays until it is told a third channel.
+    /// ten seconds, it goes back, and stays until it gets a third channel.
     pub fn tune(&mut self, now: Instant, channel: Channel) {
         if channel == self.channel || Some(channel) == self.failed {
             return;
