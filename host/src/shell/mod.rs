@@ -85,7 +85,7 @@ impl LineRate {
 }
 
 /// Opens the link that `settings` name; virtual robots are started with the settings of `sim`, a base station
-/// is told its team's plan.
+/// gets its team's plan.
 pub fn open(
     link: &RobotLink,
     (team, plan): (TeamId, RadioPlan),

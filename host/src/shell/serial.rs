@@ -25,7 +25,7 @@ const WRITE_MAX: Duration = Duration::from_millis(10);
 const BUFFERED_TIME: Duration = Duration::from_millis(3);
 /// Interval of reports that the line takes less than its rate.
 const STUCK_REPORT_EVERY: Duration = Duration::from_secs(10);
-/// Interval at which the base station is told its place on the air, and reports its counts.
+/// Interval at which the base station gets its channel and rate, and reports its counts.
 const PLAN_EVERY: Duration = Duration::from_secs(1);
 /// Time after which a base station that does not answer is reported.
 const ANSWER_WITHIN: Duration = Duration::from_secs(5);
@@ -51,12 +51,12 @@ pub struct SerialLink {
     planned: Planned,
 }
 
-/// What the base station is told of the air, and what it has answered.
+/// The plan sent to the base station, and its answer.
 #[derive(Debug, Default)]
 struct Planned {
     plan: Option<(TeamId, RadioPlan)>,
-    /// When it was told first, and last.
-    told: Option<(Instant, Instant)>,
+    /// When the plan was sent first, and last.
+    sent: Option<(Instant, Instant)>,
     /// The plan that it follows, by its newest report.
     follows: Option<RadioPlan>,
     /// What was last said of it to the operator.
@@ -71,21 +71,21 @@ enum Said {
 }
 
 impl Planned {
-    /// The line that tells the plan, if it is due.
+    /// The line with the plan, if it is due.
     fn due(&mut self) -> Option<Packet> {
         let (team, plan) = self.plan?;
         let now = Instant::now();
-        if self.told.is_some_and(|(_, last)| now.duration_since(last) < PLAN_EVERY) {
+        if self.sent.is_some_and(|(_, last)| now.duration_since(last) < PLAN_EVERY) {
             return None;
         }
-        self.told = Some((self.told.map_or(now, |(first, _)| first), now));
+        self.sent = Some((self.sent.map_or(now, |(first, _)| first), now));
         Some(station::packet(&StationMessage::Plan(team, plan)))
     }
 
     /// What the operator should know, each once.
     fn notice(&mut self, device: &str) -> Option<String> {
         let (_, plan) = self.plan?;
-        let (first, _) = self.told?;
+        let (first, _) = self.sent?;
         let said = match self.follows {
             Some(follows) if follows == plan => None,
             Some(follows) => Some(Said::Elsewhere(follows)),
@@ -132,14 +132,14 @@ impl SerialLink {
         }
     }
 
-    /// Tells the base station from now on where its team is on the air.
+    /// Sends the base station its team's channel and rate from now on.
     #[must_use]
     pub fn planned(mut self, team: TeamId, plan: RadioPlan) -> Self {
         self.planned.plan = Some((team, plan));
         self
     }
 
-    fn tell_plan(&mut self) -> Result<(), LinkError> {
+    fn send_plan(&mut self) -> Result<(), LinkError> {
         self.planned.due().map_or(Ok(()), |packet| self.send(To::All, &packet))
     }
 
@@ -193,7 +193,7 @@ impl Link for SerialLink {
             doing: "read from".into(),
             error,
         };
-        self.tell_plan()?;
+        self.send_plan()?;
         let until = Instant::now() + wait;
         loop {
             if let Some(packet) = self.take() {
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_base_station_is_told_its_plan_and_what_it_does_else_is_said_once() {
+    fn a_base_station_gets_its_plan_and_what_it_does_else_is_said_once() {
         let (mut station, link) = pair();
         let plan = RadioPlan { channel: 40, megabits: 2, address: 7 };
         let mut link = link.planned(TeamId(2), plan);
@@ -324,9 +324,9 @@ mod tests {
         assert_eq!(link.receive(Duration::from_millis(1)).unwrap(), None);
         let (mut bytes, mut lines) = ([0; 64], Lines::new());
         let len = station.read(&mut bytes).unwrap();
-        let told =
+        let sent =
             bytes[..len].iter().find_map(|byte| lines.push(*byte)).and_then(|line| station::read(&line));
-        assert_eq!(told, Some(StationMessage::Plan(TeamId(2), plan)));
+        assert_eq!(sent, Some(StationMessage::Plan(TeamId(2), plan)));
         for (channel, expected) in [(6, true), (6, false), (40, false), (6, true)] {
             let plan = RadioPlan { channel, ..plan };
             let (robot, packets) = (protocol::RobotId::ZERO, station::PacketCounts::default());

@@ -131,7 +131,7 @@ impl CaseWorkbench {
             Asked::Sample { number } => {
                 let rehearsal = locked(&self.rehearsal);
                 let sample = rehearsal.as_ref().ok_or(NO_REHEARSAL)?.sample(number);
-                sample.ok_or("there is no such attempt: rehearse anew")?
+                sample.ok_or("there is no such attempt: rehearse again")?
             }
             Asked::Tries { plan: Some(_) } if is_real(request.powers) => return Err(REAL_FIELD.to_owned()),
             Asked::Tries { plan: Some(plan) } => {
