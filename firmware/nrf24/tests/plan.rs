@@ -23,7 +23,7 @@ fn a_new_channel_and_rate_are_followed_without_a_power_cycle() {
     for (seed, (channel, megabits)) in (1..).zip([(2, 2), (80, 1), (40, 1), (77, 2)]) {
         let mut channels = Channels::new(Faults { loss: 0.1, ..Faults::default() }, seed);
         channels.run(WARM_UP);
-        channels.tell(&plan(channel, megabits));
+        channels.order(&plan(channel, megabits));
         channels.run(FOUND_WITHIN);
         let last = channels.all_heard_after(WARM_UP + 10_000).expect("every robot is found");
         worst = worst.max(last - WARM_UP);
@@ -40,11 +40,11 @@ fn a_base_station_that_no_robot_follows_goes_back_and_stays() {
     channels.run(WARM_UP);
     // The robots' chips have no supply, as if the new channel were jammed.
     channels.power_robots(false);
-    channels.tell(&plan(60, 2));
+    channels.order(&plan(60, 2));
     channels.run(11_000_000);
     channels.power_robots(true);
     let back = channels.now;
-    channels.tell(&plan(60, 2));
+    channels.order(&plan(60, 2));
     channels.run(1_000_000);
     assert_eq!(channels.report().expect("reports").plan.channel, 76, "where it came from");
     assert!(channels.all_heard_after(back).expect("all are back") < back + 500_000);
@@ -54,7 +54,7 @@ fn a_base_station_that_no_robot_follows_goes_back_and_stays() {
 fn packets_of_each_robot_are_counted_and_add_up() {
     let mut channels = Channels::new(Faults { loss: 0.3, ..Faults::default() }, 3);
     channels.run(3_000_000);
-    channels.tell(&plan(76, 2));
+    channels.order(&plan(76, 2));
     channels.run(100_000);
     let counts: Vec<_> = channels.reports.iter().map(|report| report.packets).collect();
     assert_eq!(counts.len(), 6);
@@ -75,12 +75,12 @@ fn a_scan_names_the_quietest_channels_and_is_refused_in_play() {
         channels.air.carrier(channel, share);
     }
     channels.run(WARM_UP);
-    channels.tell(&StationMessage::Scan(50));
+    channels.order(&StationMessage::Scan(50));
     channels.run(50_000);
     assert_eq!(channels.spectrum.take(), Some((0, Vec::new())), "frames of a host come");
     channels.is_silent = true;
     channels.run(1_500_000);
-    channels.tell(&StationMessage::Scan(50));
+    channels.order(&StationMessage::Scan(50));
     channels.run(5_000_000);
     let (sweeps, counts) = channels.spectrum.take().expect("a spectrum");
     assert_eq!((sweeps, counts.len()), (50, 84));
@@ -91,7 +91,7 @@ fn a_scan_names_the_quietest_channels_and_is_refused_in_play() {
         assert_eq!(*count == 0, share == 0.0, "channel {channel}");
     }
     // A host's frame ends a scan at once, and robots are led again.
-    channels.tell(&StationMessage::Scan(200));
+    channels.order(&StationMessage::Scan(200));
     channels.run(20_000);
     channels.is_silent = false;
     let resumed = channels.now;

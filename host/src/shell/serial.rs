@@ -59,6 +59,8 @@ struct Planned {
     sent: Option<(Instant, Instant)>,
     /// The plan that it follows, by its newest report.
     follows: Option<RadioPlan>,
+    /// Whether a frame of a robot came: through a modem too, which answers to no plan.
+    hears_robots: bool,
     /// What was last said of it to the operator.
     said: Option<Said>,
 }
@@ -89,7 +91,7 @@ impl Planned {
         let said = match self.follows {
             Some(follows) if follows == plan => None,
             Some(follows) => Some(Said::Elsewhere(follows)),
-            None if first.elapsed() < ANSWER_WITHIN => return None,
+            None if self.hears_robots || first.elapsed() < ANSWER_WITHIN => return None,
             None => Some(Said::NoAnswer),
         };
         if said == self.said {
@@ -98,8 +100,8 @@ impl Planned {
         self.said = said;
         Some(match said? {
             Said::NoAnswer => format!(
-                "{device}: the base station does not answer to radio settings: its image is of before 0.2, so that it is on its team's \
-                 default channel, and robots of this release do not hear it; flash it again, or check the line"
+                "{device}: no robot is heard, and no base station answers to radio settings: one of before 0.2 is on its team's default \
+                 channel, where robots of this release do not hear it (flash it again); a modem never answers"
             ),
             Said::Elsewhere(follows) => format!(
                 "{device}: the base station is on channel {} at {} Mbit/s, not on {} at {}: no robot followed it there; are they on, \
@@ -161,6 +163,7 @@ impl SerialLink {
         if let Some(StationMessage::Report(report)) = found.as_deref().and_then(station::read) {
             self.planned.follows = Some(report.plan);
         }
+        self.planned.hears_robots |= found.as_deref().is_some_and(|packet| !station::is_message(packet));
         found
     }
 }
@@ -337,6 +340,17 @@ mod tests {
             assert_eq!(notice.is_some(), expected, "{channel}: {notice:?}");
             assert!(notice.is_none_or(|text| text.contains("is on channel 6 at 2 Mbit/s, not on 40")));
         }
+    }
+
+    #[test]
+    fn a_base_station_that_does_not_answer_is_said_once_and_not_where_robots_are_heard() {
+        let plan = Some((TeamId(2), RadioPlan::of_team(TeamId(2))));
+        let sent = Instant::now().checked_sub(2 * ANSWER_WITHIN).map(|first| (first, first));
+        let mut silent = Planned { plan, sent, ..Planned::default() };
+        assert!(silent.notice("tty").unwrap().contains("no base station answers"));
+        assert_eq!(silent.notice("tty"), None);
+        let mut modem = Planned { plan, sent, hears_robots: true, ..Planned::default() };
+        assert_eq!(modem.notice("tty"), None);
     }
 
     #[test]

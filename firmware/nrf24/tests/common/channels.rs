@@ -60,7 +60,7 @@ impl Channels {
         }
     }
 
-    pub(crate) fn tell(&mut self, message: &StationMessage) {
+    pub(crate) fn order(&mut self, message: &StationMessage) {
         self.team.station.end.push(Instant(self.now), &line(&station::packet(message)));
         self.team.station_news = true;
     }

@@ -8,7 +8,7 @@ use clap::Args;
 use host::config::RobotLink;
 use host::radio::To;
 use host::shell::{Link as _, SerialLink};
-use protocol::station::{self, CHANNEL_MAX, CHANNEL_MIN, StationMessage};
+use protocol::station::{self, CHANNEL_MAX, CHANNEL_MIN, SCANNED, StationMessage};
 use serde_json::json;
 
 use crate::Failure;
@@ -61,7 +61,7 @@ pub(super) fn run(args: &ScanArgs) -> Result<(), Failure> {
         return Err(ScanError::NoStation(args.robots.clone()).into());
     };
     let mut link = SerialLink::open(&device, baud)?;
-    note!("measures {} sweeps of 84 channels", args.sweeps);
+    note!("measuring {} sweeps of {SCANNED} channels", args.sweeps);
     for _ in 0..TRIES_MAX {
         link.send(To::All, &station::packet(&StationMessage::Scan(args.sweeps)))?;
         let until = Instant::now() + SWEEP_MAX * u32::from(args.sweeps) + ANSWER_MAX;
