@@ -1,14 +1,17 @@
 //! `case_candidate`: the case that our robots would retrieve for a ball at a place, with its next step: one
 //! of the actions that the rated list compares. Attack frame, m.
 
-use casebase::{CaseBase, LegKind, Problem, RetrievalSettings};
+use casebase::{CaseBase, CaseRobot, LegKind, Problem, RetrievalSettings};
 use geometry::{Attack, Point};
 use protocol::host::Hint;
 use protocol::team::CASE_ROBOTS_MAX;
 use protocol::{CaseId, RobotId};
+use rules::Phase;
 
-use super::view::View;
+use super::view::{CasePass, View};
 
+/// At a restart mates have 2.5 s to go anywhere, mm: the kicker goes round the ball, and waits for them.
+const RESTART_TRAVEL_MAX_MM: f32 = 5000.0;
 /// A kick that ends this near the goal line is a shot, m: cases shoot at the line itself, in whole mm.
 const SHOT_ENDS_WITHIN_M: f32 = 0.01;
 
@@ -55,9 +58,21 @@ impl CastCase {
         Hint { case: self.case, robots: self.robots.iter().flatten().copied().collect(), pass_point: None }
     }
 
+    /// The pass of `getter` that it starts with.
+    pub fn first_pass(&self, getter: RobotId) -> Option<CasePass> {
+        let CaseStep::Pass { receiver, at, .. } = self.step else { return None };
+        let (passer, receiver) = ((getter, self.part_of(getter)?), (receiver, self.part_of(receiver)?));
+        Some(CasePass { case: self.case, passer, receiver, at })
+    }
+
+    /// The case robot that a robot of ours plays.
+    fn part_of(&self, robot: RobotId) -> Option<CaseRobot> {
+        CaseRobot::new(self.robots.iter().position(|player| *player == Some(robot))?)
+    }
+
     /// Whether a robot of ours plays in it.
     pub fn has(&self, robot: RobotId) -> bool {
-        self.robots.contains(&Some(robot))
+        self.part_of(robot).is_some()
     }
 }
 
@@ -84,7 +99,11 @@ pub fn retrieve(
     for robot in &view.theirs {
         let _ = problem.opponents.push(flip.to_field(robot.position).into());
     }
-    let found = casebase::retrieve_best(base, &problem, &RetrievalSettings::default())?;
+    let mut settings = RetrievalSettings::default();
+    if view.phase != Phase::Run {
+        settings.travel_max_mm = RESTART_TRAVEL_MAX_MM;
+    }
+    let found = casebase::retrieve_best(base, &problem, &settings)?;
     let case = base.case(found.case)?;
     if found.correspondence.get(case.getter().index()) != Some(&getter) {
         return None;
@@ -165,5 +184,36 @@ mod tests {
         assert_eq!(find(&view, &|id| id != getter), None, "the one at the ball may not");
         view.knows_cases = RobotSet::default();
         assert_eq!(find(&view, &|_| true), None);
+    }
+
+    #[test]
+    fn the_first_pass_of_a_case_names_passer_and_receiver_with_their_parts() {
+        let id = |number| RobotId::new(number).unwrap();
+        let at = Point::new(2.0, 1.0);
+        let step = CaseStep::Pass { from: Point::new(0.0, 0.0), receiver: id(5), at };
+        let cast = CastCase { case: CaseId(3), robots: [Some(id(2)), Some(id(5)), None, None], step };
+        let pass = cast.first_pass(id(2)).unwrap();
+        assert_eq!((pass.passer.1.index(), pass.receiver.1.index(), pass.at), (0, 1, at));
+        assert_eq!(cast.first_pass(id(4)), None, "it plays no part");
+        assert_eq!(CastCase { step: CaseStep::Hold, ..cast }.first_pass(id(2)), None);
+    }
+
+    #[test]
+    fn at_a_restart_mates_may_be_farther_from_their_places() {
+        let base = case_library::division_b();
+        let found = |phase| {
+            let balls = (0..63).map(|i| (0.5 + 0.5 * (i % 7) as f32, 0.5 * (i / 7) as f32 - 2.0));
+            let of_two = |at: (f32, f32)| {
+                let mut view =
+                    knowing(view(at, &[(-4.4, 0.0), (at.0 - 0.2, at.1), (-2.5, 0.0)], &[(4.4, 0.0)]));
+                view.phase = phase;
+                let found =
+                    retrieve(&view, &base, view.ours[1].id, Point::new(at.0, at.1), |id| id != view.keeper);
+                found.is_some_and(|cast| cast.has(view.ours[2].id))
+            };
+            balls.filter(|at| of_two(*at)).count()
+        };
+        let (in_play, restart) = (found(Phase::Run), found(Phase::FreeKick(rules::Side::Ours)));
+        assert!(restart > in_play + 5, "{restart} of 63 balls, in play {in_play}");
     }
 }

@@ -126,6 +126,11 @@ impl<'v> Release<'v> {
         Self { view, from, straight, pressed_after }
     }
 
+    /// Place of the ball when it is kicked, m.
+    pub fn from(&self) -> Point<Attack> {
+        self.from
+    }
+
     /// P(an opponent has the ball before it is kicked towards `at`).
     pub fn lost(&self, at: Point<Attack>) -> f32 {
         let turn = (self.from.direction_to(at) - self.straight).radians().abs().min(math::PI);

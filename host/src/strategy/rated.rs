@@ -173,7 +173,8 @@ pub fn rate(
         add(&mut list, Action::OfCase { pass, rating, moved }, worth);
     }
     if let Some(cast) = of_cases.retrieved
-        && let Some(worth) = case_worth(view, kicks, who, from, &cast)
+        && let Some(release) = release
+        && let Some(worth) = case_worth(view, kicks, who, &release, &cast)
     {
         add(&mut list, Action::Case(cast), worth);
     }
@@ -217,27 +218,36 @@ pub fn rate_again(
         Action::Clear { at, kick } => {
             (*action, clear::worth_again(view, kicks, view.our(who)?, from, (at, kick)))
         }
-        Action::Case(cast) => (*action, case_worth(view, kicks, who, from, &cast)?),
+        Action::Case(cast) => (*action, case_worth(view, kicks, who, &release, &cast)?),
         Action::PlayOn => (*action, play_on(view, from)),
     };
     Some(Rated { action, worth })
 }
 
-/// A case is worth what its first step with the ball is worth; `None` where its receiver is gone.
-fn case_worth(view: &View, kicks: &Kicks, who: RobotId, from: Point<Attack>, cast: &CastCase) -> Option<f32> {
+/// A case is worth what its first step with the ball is worth, less what an opponent who is first at the ball
+/// takes of it; `None` where its receiver is gone.
+fn case_worth(
+    view: &View,
+    kicks: &Kicks,
+    who: RobotId,
+    release: &Release<'_>,
+    cast: &CastCase,
+) -> Option<f32> {
     let half = view.field.length * 0.5;
     Some(match cast.step {
         CaseStep::Pass { from, receiver, at } => {
             let scene = PassScene::of(view, kicks, from, Some(who), view.our(receiver)?).keeping();
-            pass_worth(view, from, &scene.rate(at))
+            release.worth(at, pass_worth(view, from, &scene.rate(at)))
         }
         CaseStep::Shot { from } => {
             let found = shot(view, kicks, from);
-            shot_worth(view, from, found.aim, found.value())
+            release.worth(found.aim, shot_worth(view, from, found.aim, found.value()))
         }
         // Either team may be first at it.
-        CaseStep::Kick { to } => 0.5 * (view.stakes.of_ours(half, to) + view.stakes.of_theirs(half, to)),
-        CaseStep::Hold => play_on(view, from),
+        CaseStep::Kick { to } => {
+            release.worth(to, 0.5 * (view.stakes.of_ours(half, to) + view.stakes.of_theirs(half, to)))
+        }
+        CaseStep::Hold => play_on(view, release.from()),
     })
 }
 
@@ -371,13 +381,15 @@ mod tests {
         let (kicks, from, who) = (kicks(), Point::new(2.0, 0.0), seen.ours[1].id);
         let cast = |step| CastCase { case: CaseId(3), robots: [Some(who), None, None, None], step };
         let at = Point::new(3.0, 1.6);
-        let worth = |step| case_worth(&seen, &kicks, who, from, &cast(step));
+        let release = Release::of(&seen, &kicks, &seen.ours[1], from);
+        let worth = |step| case_worth(&seen, &kicks, who, &release, &cast(step));
         let pass = CaseStep::Pass { from, receiver: seen.ours[2].id, at };
         let scene = PassScene::of(&seen, &kicks, from, Some(who), &seen.ours[2]).keeping();
-        assert_eq!(worth(pass), Some(pass_worth(&seen, from, &scene.rate(at))));
+        assert_eq!(worth(pass), Some(release.worth(at, pass_worth(&seen, from, &scene.rate(at)))));
         assert_eq!(worth(CaseStep::Hold), Some(play_on(&seen, from)));
         let found = shot(&seen, &kicks, from);
-        assert_eq!(worth(CaseStep::Shot { from }), Some(shot_worth(&seen, from, found.aim, found.value())));
+        let shot = release.worth(found.aim, shot_worth(&seen, from, found.aim, found.value()));
+        assert_eq!(worth(CaseStep::Shot { from }), Some(shot));
         let gone = CaseStep::Pass { from, receiver: RobotId::new(9).unwrap(), at };
         assert_eq!(worth(gone), None, "its receiver is not there");
         let of_cases = OfCases { pass: None, retrieved: Some(cast(pass)) };
@@ -387,5 +399,19 @@ mod tests {
                 .any(|rated| Some(rated.worth) == worth(pass) && matches!(rated.action, Action::Case(_))),
             "{list:?}"
         );
+    }
+
+    #[test]
+    fn a_case_whose_ball_an_opponent_reaches_first_is_worth_less() {
+        let worth = |near: (f32, f32)| {
+            let seen = view((2.0, 0.0), &[(-4.4, 0.0), (1.6, 0.0), (3.0, 1.8)], &[(4.4, 0.0), near]);
+            let (kicks, from, who) = (kicks(), Point::new(2.0, 0.0), seen.ours[1].id);
+            let step = CaseStep::Pass { from, receiver: seen.ours[2].id, at: Point::new(3.0, 1.6) };
+            let cast =
+                CastCase { case: CaseId(3), robots: [Some(who), Some(seen.ours[2].id), None, None], step };
+            case_worth(&seen, &kicks, who, &Release::of(&seen, &kicks, &seen.ours[1], from), &cast).unwrap()
+        };
+        let (first, later) = (worth((2.0, -0.2)), worth((2.0, -2.5)));
+        assert!(first < 0.8 * later, "{first} {later}");
     }
 }

@@ -223,10 +223,15 @@ impl Coach {
         let receives = |id| !defenders.contains(&Some(id));
         let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who);
         let may = |id| id == who || plan.free.contains(&id) && id != view.keeper && receives(id);
-        let retrieved = (self.tactics.bridge && may_play_on && !view.in_play.has(who))
+        let retrieved = (self.tactics.bridge && !view.in_play.has(who))
             .then(|| case_candidate::retrieve(view, &self.open_play.rated.cases, who, from, may))
             .flatten();
-        let of_cases = OfCases { pass, retrieved };
+        // Robots play cases only while the ball is in play: at a restart the host orders the first pass.
+        let of_cases = if may_play_on {
+            OfCases { pass, retrieved }
+        } else {
+            OfCases { pass: retrieved.and_then(|cast| cast.first_pass(who)), retrieved: None }
+        };
         let mut list = rated::rate(view, &mut self.passes, who, from, of_cases);
         list.retain(|rated| match rated.action {
             Action::Pass { receiver, rating } => {
@@ -353,5 +358,33 @@ mod tests {
             changes += u32::from(last.replace(kind).is_some_and(|before| before != kind));
         }
         assert!(changes <= 3, "{changes} in 30 ticks");
+    }
+
+    /// Free kicks in situations drawn at random: robots would not kick in a case before the ball is in play.
+    #[test]
+    fn at_a_free_kick_a_case_is_a_pass_that_the_host_orders() {
+        let mut rng = Xoshiro128PlusPlus::seed_from_u64(9);
+        let mut of_cases = 0;
+        for situation in 0..200 {
+            let mut within =
+                |from: f32, to: f32| from + (rng.next_u32() >> 8) as f32 / 16_777_216.0 * (to - from);
+            let mut place = |x: [f32; 2]| (within(x[0], x[1]), within(-2.5, 2.5));
+            let ball = place([0.5, 4.0]);
+            let ours = [(-4.4, 0.0), (ball.0 - 0.3, ball.1), place([-1.0, 3.0]), place([0.0, 3.5])];
+            let theirs = [(4.4, 0.0), place([1.0, 3.5]), place([0.0, 3.5]), place([-1.0, 3.0])];
+            let mut coach = Coach::new(Team::Ours, Tactics::default(), League::DivisionB);
+            let mut seen = view(ball, &ours, &theirs);
+            seen.phase = Phase::FreeKick(rules::Side::Ours);
+            for robot in &seen.ours {
+                seen.knows_cases.insert(robot.id);
+            }
+            coach.decide(&seen);
+            seen.now += Duration::millis(300);
+            let orders = coach.decide(&seen);
+            let by_themselves = |order: &&Order| matches!(order.task, Task::Case(_) | Task::Gameplay);
+            assert_eq!(orders.iter().find(by_themselves), None, "situation {situation}");
+            of_cases += u32::from(orders.iter().any(|o| matches!(o.why, OrderReason::OfCase { .. })));
+        }
+        assert!(of_cases > 5, "{of_cases} of 200 are the pass of a case");
     }
 }
