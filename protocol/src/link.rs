@@ -145,6 +145,12 @@ impl Link {
         &self.snapshots
     }
 
+    /// A part of a snapshot came and was not opened: it is not lost. As its tag was not checked, a forged one
+    /// may hide one that is.
+    pub fn leave_snapshot_unopened(&mut self) {
+        self.snapshots.unopened = self.snapshots.unopened.saturating_add(1);
+    }
+
     /// Fills in the link's counters; all but condition, battery and silence.
     pub fn report(&self, now: Instant, telemetry: &mut Telemetry) {
         telemetry.host = self.host_epoch().unwrap_or(0);
@@ -248,6 +254,8 @@ pub struct Snapshots {
     /// many parts as the later one). 256 snapshots missed in a row cannot be distinguished from none; a
     /// caller that relies on it must check the silence too.
     pub lost: u32,
+    /// Parts that came since the last opened one and were left unopened: they are not lost.
+    unopened: u8,
     now: Option<Now>,
 }
 
@@ -283,8 +291,10 @@ impl Snapshots {
                     let missing = u32::from(last.parts).saturating_sub(last.came.count_ones());
                     let between = part.snapshot.wrapping_sub(last.number).wrapping_sub(1);
                     let skipped = u32::from(between) * u32::from(part.parts);
-                    self.lost = self.lost.saturating_add(missing + skipped);
+                    let lost = (missing + skipped).saturating_sub(u32::from(self.unopened));
+                    self.lost = self.lost.saturating_add(lost);
                 }
+                self.unopened = 0;
                 self.now = Some(Now { number: part.snapshot, parts: part.parts, came: bit });
             }
         }

@@ -148,7 +148,7 @@ impl<'a> Brain<'a> {
             self.unopened = self.unopened.saturating_add(1);
             // What a step that has to plan leaves to the next ones is no flood.
             if !must_plan || kind == PacketKind::Command {
-                self.spoken.leave_unopened(now);
+                self.spoken.leave_unopened(now, kind == PacketKind::Beacon);
             }
         }
         takes

@@ -63,6 +63,9 @@ impl<'a> Station<'a> {
             _ => PacketKind::Beacon,
         };
         if !self.brain.takes_packet(now, from) {
+            if from == PacketKind::Snapshot {
+                self.link.leave_snapshot_unopened();
+            }
             return;
         }
         let led_by = self.link.host_epoch();

@@ -207,3 +207,32 @@ fn a_match_among_bystanders_is_played_without_them_and_is_had_again_from_its_wor
     assert_eq!(play_in("random:3", &mut NoWatcher).trace_hash, report.trace_hash);
     assert_ne!(play_in("nominal", &mut NoWatcher).trace_hash, report.trace_hash);
 }
+
+/// Robots' complaints of a flooded radio, and the greatest loss that they report.
+#[derive(Default)]
+struct Complaints {
+    flooded: u32,
+    looks: u32,
+    worst_loss: f64,
+}
+
+impl Watcher for Complaints {
+    fn tick(&mut self, game: &Game<'_>) {
+        for robot in arena::game::numbers(6) {
+            let Some(quality) = game.host(Colour::Blue).radio().quality(robot) else { continue };
+            self.looks += 1;
+            self.flooded += u32::from(quality.condition().has(protocol::host::Condition::FLOODED));
+            self.worst_loss = quality.loss_down().unwrap_or(0.0);
+        }
+    }
+}
+
+#[test]
+fn in_a_nominal_match_no_robot_reports_a_flooded_radio_or_lost_snapshots() {
+    let mut complaints = Complaints::default();
+    short(1, 20.0, &mut complaints);
+    let Complaints { flooded, looks, worst_loss } = complaints;
+    println!("flooded in {flooded} of {looks} looks, {worst_loss:.1} % lost");
+    assert!(looks > 10_000 && flooded == 0, "flooded in {flooded} of {looks} looks");
+    assert!(worst_loss < 1.0, "{worst_loss} % lost");
+}

@@ -217,6 +217,13 @@ fn lost_parts_of_snapshots_are_counted_by_their_numbers() {
     a.report(NOW, &mut telemetry);
     assert_eq!((telemetry.received, telemetry.lost, telemetry.snapshot), (5, 5, 2));
     assert_eq!((telemetry.refused, telemetry.silence), ([0; Refusal::KINDS], 3));
+    // Of the next five, two parts were left unopened, two were lost, then all came.
+    (0..2).for_each(|_| a.leave_snapshot_unopened());
+    for (snapshot, part) in [(4, 1), (5, 0), (5, 1)] {
+        assert!(a.open(NOW, &host.seal(NOW, &world(snapshot, part, 2))).is_ok());
+    }
+    a.report(NOW, &mut telemetry);
+    assert_eq!((telemetry.received, telemetry.lost, telemetry.snapshot), (8, 6, 5));
 }
 
 #[test]

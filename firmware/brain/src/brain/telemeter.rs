@@ -27,8 +27,10 @@ pub(super) struct Spoken {
     contact: bool,
     kicker_ready: bool,
     tipped: bool,
-    /// When a packet was last left unopened.
-    unopened: Option<Instant>,
+    /// When more packets were left unopened than a team sends.
+    flooded: Option<Instant>,
+    /// Beacons left unopened, less [`BEACONS_OF_STEP`] for each step.
+    unopened: u8,
 }
 
 impl Spoken {
@@ -44,6 +46,7 @@ impl Spoken {
     /// long to open.
     pub(super) fn has_turn(&mut self, robot: RobotId, every: u8) -> bool {
         self.steps = (self.steps + 1) % every;
+        self.unopened = self.unopened.saturating_sub(BEACONS_OF_STEP);
         usize::from(self.steps) == robot.index() % usize::from(every)
     }
 
@@ -56,8 +59,12 @@ impl Spoken {
         self.beacon = Some(now);
     }
 
-    pub(super) fn leave_unopened(&mut self, now: Instant) {
-        self.unopened = Some(now);
+    /// A packet was left unopened: a flood, unless it is a beacon and no more came than a team sends.
+    pub(super) fn leave_unopened(&mut self, now: Instant, is_beacon: bool) {
+        self.unopened = self.unopened.saturating_add(u8::from(is_beacon));
+        if !is_beacon || self.unopened > BEACONS_AT_ONCE {
+            self.flooded = Some(now);
+        }
     }
 
     pub(super) fn explained(&mut self, now: Instant) {
@@ -124,7 +131,7 @@ impl Brain<'_> {
             (self.actuation.is_battery_low(), Condition::BATTERY_LOW),
             (self.actuation.ruling() != Ruling::Allowed, Condition::GOVERNED),
             (reasons.has(LimitReason::Silence), Condition::LINK_LOST),
-            (spoken.unopened.is_some_and(|last| now.since(last) < FLOODED_FOR), Condition::FLOODED),
+            (spoken.flooded.is_some_and(|last| now.since(last) < FLOODED_FOR), Condition::FLOODED),
         ];
         let set = |all: Condition, (holds, bit): (bool, Condition)| if holds { all.with(bit) } else { all };
         let condition = condition.into_iter().fold(Condition::default(), set);
@@ -153,9 +160,40 @@ impl Brain<'_> {
     }
 }
 
-/// The robot reports a flooded radio for so long after it has left a packet unopened.
+/// The robot reports a flooded radio for so long after it has left too many packets unopened.
 const FLOODED_FOR: Duration = Duration::millis(1_000);
+/// Beacons of a step of 10 ms: ten teammates, the most of a league, send twenty each a second.
+const BEACONS_OF_STEP: u8 = 2;
+/// Beacons and handshakes at once, when all ten teammates tell of a change of their cycle, twice.
+const BEACONS_AT_ONCE: u8 = 20;
 /// Period of the telemetry: ten times a second.
 const TELEMETRY_PERIOD: Duration = Duration::millis(100);
 /// But not in every step while something toggles, as a break-beam sensor does.
 const TELEMETRY_LEAST: Duration = Duration::millis(20);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a flood is reported where this number of beacons is left unopened in each of 100 steps.
+    fn is_flooded(beacons: u8) -> bool {
+        let mut spoken = Spoken::default();
+        for step in 0..100 {
+            spoken.has_turn(RobotId::ZERO, 5);
+            for _ in 0..beacons {
+                spoken.leave_unopened(Instant(step * 10_000), true);
+            }
+        }
+        spoken.flooded.is_some()
+    }
+
+    #[test]
+    fn beacons_that_teammates_send_are_no_flood_and_more_of_them_are() {
+        assert!(!is_flooded(BEACONS_OF_STEP) && is_flooded(BEACONS_OF_STEP + 1) && is_flooded(12));
+        let mut spoken = Spoken::default();
+        (0..BEACONS_AT_ONCE).for_each(|_| spoken.leave_unopened(Instant(0), true));
+        assert_eq!(spoken.flooded, None, "all teammates tell of a change at once");
+        spoken.leave_unopened(Instant(0), false);
+        assert_eq!(spoken.flooded, Some(Instant(0)), "a command that no step had time for");
+    }
+}
