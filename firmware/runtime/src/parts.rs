@@ -70,6 +70,8 @@ pub struct PartsEstimator {
     /// Decaying mean of squared contradictions, (m/s)²: of everything, without each encoder, without the
     /// gyroscope.
     contradictions: [f32; 2 + WHEELS],
+    /// The first of them, without what was contradicted while wheels may have slipped.
+    firm: f32,
     /// Decaying mean of the largest effort.
     strain: f32,
     window: Window,
@@ -111,6 +113,7 @@ impl PartsEstimator {
             whole: all,
             all,
             contradictions: [0.0; 2 + WHEELS],
+            firm: 0.0,
             strain: 0.0,
             window: Window::default(),
             efforts: Efforts::default(),
@@ -184,7 +187,7 @@ impl PartsEstimator {
             if let Some(turn) = gyroscope {
                 let largest = rolled.efforts.iter().fold(0.0, |most: f32, effort| most.max(effort.abs()));
                 decay(&mut self.strain, largest, CONTRADICTION_SHARE);
-                self.contradict(&rolled.rims, turn);
+                self.contradict(&rolled.rims, turn, largest.max(self.strain) > STRAIN_MAX);
                 // With three motors wheels slip, and contradict each other.
                 if suspects.iter().all(Option::is_none) {
                     self.least_contradiction(suspects);
@@ -193,19 +196,24 @@ impl PartsEstimator {
         }
     }
 
-    fn contradict(&mut self, rims: &[f32; WHEELS], turn: f32) {
+    fn contradict(&mut self, rims: &[f32; WHEELS], turn: f32, slips: bool) {
         let fitted = self.all.rims(self.all.twist(*rims));
         let among_wheels: f32 =
             rims.iter().zip(fitted).map(|(rim, fitted)| (rim - fitted) * (rim - fitted)).sum();
         let [of_all, of_gyroscope, of_encoders @ ..] = &mut self.contradictions;
         decay(of_gyroscope, among_wheels, CONTRADICTION_SHARE);
         let mut rest = among_wheels;
+        let mut all = None;
         for (sum, (row, noise)) in core::iter::once(of_all).chain(of_encoders).zip(&self.turning) {
             let turned: f32 = row.iter().zip(rims).map(|(rate, rim)| rate * rim).sum();
             let off = (turned - turn) / noise;
-            decay(sum, rest + off * off, CONTRADICTION_SHARE);
+            let contradiction = rest + off * off;
+            decay(sum, contradiction, CONTRADICTION_SHARE);
+            all = all.or(Some(contradiction));
             rest = 0.0;
         }
+        let firm = all.filter(|_| !slips).unwrap_or(0.0);
+        decay(&mut self.firm, firm, CONTRADICTION_SHARE);
     }
 
     fn least_contradiction(&self, suspects: &mut Suspects) {
@@ -213,13 +221,9 @@ impl PartsEstimator {
         let encoders = (0..).zip(of_encoders).map(|(wheel, sum)| (Part::encoder(wheel), sum));
         let [best, second] = two_least(encoders.chain([(Part::GYROSCOPE, of_gyroscope)]));
         // All wheels slip together where they push hard, as without a gyroscope.
-        let (least, slips) = if best.0 == Part::GYROSCOPE {
-            (GYROSCOPE_MIN, self.strain > STRAIN_MAX)
-        } else {
-            (CONTRADICTION_MIN, false)
-        };
-        if !slips && of_all > least * least && best.1 < EXPLAINED_MAX * of_all && best.1 < NEXT_MAX * second.1
-        {
+        let (of_all, least) =
+            if best.0 == Part::GYROSCOPE { (self.firm, GYROSCOPE_MIN) } else { (of_all, CONTRADICTION_MIN) };
+        if of_all > least * least && best.1 < EXPLAINED_MAX * of_all && best.1 < NEXT_MAX * second.1 {
             suspect(suspects, best.0, 1.0 - best.1 / of_all);
         }
     }

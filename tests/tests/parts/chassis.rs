@@ -98,6 +98,12 @@ impl Chassis {
         self.fault = fault;
     }
 
+    /// A robot that starts while it rolls.
+    pub(crate) fn rolling(seed: u64, twist: Twist<Body>) -> Self {
+        let whole = Self::new(seed);
+        Self { rims: whole.omni.rims(twist), twist, ..whole }
+    }
+
     /// What it says of its parts.
     pub(crate) fn report(&self) -> PartsReport {
         self.estimator.report()

@@ -48,9 +48,9 @@ impl Hardware {
 
     /// Repaired, and started again where it rolls.
     fn restart(&mut self) {
-        let twist = self.chassis.twist;
-        *self = Self { order: self.order, was_ready: self.was_ready, ..Self::new(self.seed + 1) };
-        self.chassis.twist = twist;
+        let whole = Self::new(self.seed + 1);
+        let chassis = Chassis::rolling(whole.seed, self.chassis.twist);
+        *self = Self { chassis, order: self.order, was_ready: self.was_ready, ..whole };
     }
 
     fn failed(&self) -> Option<Part> {
@@ -246,12 +246,6 @@ fn judged(seed: u64) -> ([u32; 3], usize) {
     (judged, played.named_whole.len())
 }
 
-#[test]
-fn of_20_faults_planted_in_a_match_15_are_named_within_2_s_and_none_wrongly() {
-    let ([in_time, late, wrong], whole) = judged(SHORT_SEED);
-    assert!(in_time >= 15 && wrong == 0 && whole == 0, "{in_time}, {late}, {wrong}, {whole} of whole robots");
-}
-
 /// Matches of seeds that no threshold was set by.
 #[test]
 fn in_120_robot_minutes_of_matches_whole_robots_name_no_part() {
@@ -268,9 +262,9 @@ fn in_120_robot_minutes_of_matches_whole_robots_name_no_part() {
     assert_eq!(named, []);
 }
 
-/// The same of faults: 20 in each of five matches.
+/// 20 faults in each of five matches.
 #[test]
-fn in_matches_of_100_faults_most_are_named_within_2_s() {
+fn of_100_faults_in_matches_65_are_named_within_2_s() {
     let mut sums = ([0; 3], 0);
     for seed in FAULT_SEEDS {
         let (judged, whole) = judged(seed);
@@ -279,7 +273,7 @@ fn in_matches_of_100_faults_most_are_named_within_2_s() {
         sums.1 += whole;
     }
     println!("in time, late or not, wrongly: {:?}; of whole robots {}", sums.0, sums.1);
-    assert!(sums.0[0] >= 65);
+    assert!(sums.0[0] >= 65 && sums.0[2] <= 3 && sums.1 == 0, "{sums:?}");
 }
 
 /// A motion that differs by more is a collision's, m/s: more than wheels lag behind their order.
@@ -292,6 +286,5 @@ const FIRED_VOLTS: f32 = 80.0;
 const CHARGE_PER_STEP: f32 = 0.1;
 /// Share of the voltage that its resistor takes in a millisecond: half a second.
 const EMPTIES_PER_STEP: f32 = 0.002;
-const SHORT_SEED: u64 = 5;
 const FAULT_SEEDS: core::ops::Range<u64> = 100..105;
 const LONG_SEEDS: core::ops::Range<u64> = 200..205;

@@ -115,16 +115,10 @@ fn judged(numbers: std::ops::Range<u64>) -> [u32; 3] {
 }
 
 #[test]
-fn of_20_planted_faults_18_are_named_within_2_s() {
-    let [in_time, late, wrong] = judged(0..20);
-    assert!(in_time >= 18 && wrong == 0, "{in_time} in time, {late} later, {wrong} wrong");
-}
-
-#[test]
-fn of_400_planted_faults_most_are_named_within_2_s() {
+fn of_400_planted_faults_nine_of_ten_are_named_within_2_s() {
     let [in_time, late, wrong] = judged(20..420);
     println!("{in_time} in time, {late} later or not, {wrong} wrong");
-    assert!(in_time >= 350);
+    assert!(in_time >= 360 && wrong <= 8, "{in_time} in time, {late} later, {wrong} wrong");
 }
 
 #[test]
