@@ -19,8 +19,12 @@ const KICKS_SHOWN_MIN: usize = 3;
 /// with an error of 0.047, from kicks that left slower than ordered for a reason that is not known; the
 /// largest error of the ten right ones beside it was 0.040.
 const GAIN_ERROR_MAX: f32 = 0.04;
-/// Longest time from an order to its kick: command, radio, and the ball's path to the kicker's plate.
-const ORDER_TO_KICK_MAX: Duration = Duration::millis(400);
+/// Time in which an order reaches its robot: a kick sooner after a change of orders may be of either.
+const ORDER_ARRIVES: Duration = Duration::millis(80);
+/// Share by which an order of the same kick changes while the ball is approached.
+const SAME_ORDER_WITHIN: f32 = 0.05;
+/// An opponent whose centre is nearer to the kicked ball may have kicked it, m: both touch it at 0.11 m.
+const OPPONENT_CLEAR_M: f32 = 0.2;
 /// Two kicks of one robot are farther apart; the moment of one kick shifts by less while it becomes better
 /// known.
 const SAME_KICK_WITHIN: Duration = Duration::millis(200);
@@ -41,14 +45,22 @@ const GAIN_MAX: f32 = 2.0;
 /// Estimates of all robots' kick gains.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Kicks {
-    /// The flat kick that a robot was last ordered, m/s, and when.
-    ordered: [Option<(Instant, f32)>; RobotId::COUNT],
+    /// What each robot is ordered, and was before.
+    orders: [[Order; 2]; RobotId::COUNT],
     gains: [Samples<KICKS_KEPT>; RobotId::COUNT],
     watched: Option<Watched>,
     /// The kick that was watched last.
     known: Option<(Instant, Option<Who>)>,
     /// The newest measured kick: its robot, speed ordered and speed seen, m/s.
     newest: Option<(RobotId, [f32; 2])>,
+}
+
+/// An order of a robot.
+#[derive(Clone, Copy, Debug, Default)]
+struct Order {
+    since: Instant,
+    /// Speed of a flat kick, m/s; none: any other order.
+    speed: Option<f32>,
 }
 
 /// A kick that has just been seen.
@@ -69,10 +81,18 @@ impl Kicks {
     pub(crate) fn see(&mut self, now: Instant, world: &World, us: Colour, commands: &[HostCommand]) {
         self.watch(world, us);
         for command in commands {
-            if let Directive::Kick { kick: KickOrder::Flat(speed), .. }
-            | Directive::Pass { kick: KickOrder::Flat(speed), ready: true, .. } = command.directive
-            {
-                self.ordered[command.to.index()] = Some((now, f32::from(speed) * 0.01));
+            let speed = match command.directive {
+                Directive::Kick { kick: KickOrder::Flat(speed), .. }
+                | Directive::Pass { kick: KickOrder::Flat(speed), ready: true, .. } => {
+                    Some(f32::from(speed) * 0.01)
+                }
+                _ => None,
+            };
+            let [current, before] = &mut self.orders[command.to.index()];
+            if current.is_for(speed) {
+                current.speed = speed;
+            } else {
+                *before = core::mem::replace(current, Order { since: now, speed });
             }
         }
     }
@@ -85,7 +105,7 @@ impl Kicks {
         let kick = ball.kicked.filter(|kick| !kick.is_chip());
         if let Some(kick) = kick.filter(|kick| self.is_new(kick)) {
             self.known = Some((kick.at, kick.by));
-            self.watched = self.begin(&kick, us);
+            self.watched = self.begin(&kick, world, us);
         }
         let Some(watched) = &mut self.watched else { return };
         if kick.is_none() || ball.height > 0.0 {
@@ -116,11 +136,14 @@ impl Kicks {
         })
     }
 
-    fn begin(&self, kick: &Kick, us: Colour) -> Option<Watched> {
+    fn begin(&self, kick: &Kick, world: &World, us: Colour) -> Option<Watched> {
         let who = kick.by.filter(|who| who.colour == us)?;
-        let (at, ordered) = self.ordered[who.id.index()]?;
-        let fits = kick.at.since(at).0 <= ORDER_TO_KICK_MAX.0 && ordered >= ORDER_SPEED_MIN_M_S;
-        let along = kick.velocity.unit().filter(|_| fits)?;
+        let [current, before] = self.orders[who.id.index()];
+        let order = if kick.at < current.since { before } else { current };
+        let arrived = kick.at.since(order.since).0 >= ORDER_ARRIVES.0;
+        let ordered = order.speed.filter(|speed| arrived && *speed >= ORDER_SPEED_MIN_M_S)?;
+        let mut opponents = world.theirs(us).map(|robot| robot.pose.position.distance(kick.from));
+        let along = kick.velocity.unit().filter(|_| opponents.all(|away| away >= OPPONENT_CLEAR_M))?;
         Some(Watched {
             robot: who.id,
             ordered,
@@ -151,6 +174,16 @@ impl Kicks {
     /// The kick measured since this was last asked: its robot, speed ordered and speed seen, m/s.
     pub(crate) fn take_newest(&mut self) -> Option<(RobotId, [f32; 2])> {
         self.newest.take()
+    }
+}
+
+impl Order {
+    fn is_for(&self, speed: Option<f32>) -> bool {
+        match (self.speed, speed) {
+            (Some(ours), Some(speed)) => (speed - ours).abs() <= SAME_ORDER_WITHIN * ours,
+            (None, None) => true,
+            _ => false,
+        }
     }
 }
 
