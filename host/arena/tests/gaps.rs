@@ -3,7 +3,7 @@
 //!
 //! A robot *stands* where its true speed is below 0.05 m/s while the game runs and it has an order to move: a
 //! place farther away than 0.15 m, or an order without a place (get the ball, a case) while its governor
-//! holds it back.
+//! holds it back. A receiver that has the ball at its dribbler waits for what comes next, and does not stand.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -19,6 +19,9 @@ use protocol::frame::Sender;
 use protocol::lockstep::TickIn;
 use protocol::{RobotId, Who};
 use rules::{Colour, League, Phase};
+
+/// A ball that the dribbler touches is nearer to the robot's centre, m.
+const AT_DRIBBLER_M: f32 = 0.12;
 
 /// The governors' rulings of the last tick, by team number and robot.
 type Rulings = Rc<RefCell<BTreeMap<(u8, u8), Ruling>>>;
@@ -203,6 +206,11 @@ fn look(
         let held = held(ruling);
         let ordered = match &order.task {
             Task::Stand => false,
+            Task::Receive { .. }
+                if game.world().ball.position.distance(robot.pose.position) < AT_DRIBBLER_M =>
+            {
+                false
+            }
             Task::GoTo { at, .. } | Task::Receive { at, .. } => {
                 flip.to_field(*at).distance(robot.pose.position) > 0.15
             }
