@@ -31,34 +31,46 @@ fn counted(file: &str) -> BTreeMap<String, (u64, u64)> {
     counts
 }
 
-/// A match in which robots are left to themselves; blue scores in seed 4.
+/// A match in which robots are left to themselves.
 fn recorded(stem: &str, seed: &str) {
     let free = ["--blue-tactics", "none", "--yellow-tactics", "none"];
     done(&[&["play", "--json", "--duration", "90", "--seed", seed, "--record", stem], &free[..]].concat());
 }
 
+/// Plays of each case in the ledger of a trace, and those followed by a goal.
+fn in_ledger(trace: &str) -> BTreeMap<String, (u64, u64)> {
+    let replayed: Value = serde_json::from_str(&done(&["replay", trace, "--json"])).expect("JSON");
+    let mut ledger = BTreeMap::<String, (u64, u64)>::new();
+    for team in ["blue", "yellow"] {
+        for case in replayed["cases"][team]["cases"].as_array().expect("a list") {
+            let sum = ledger.entry(case["case"].as_str().expect("a name").to_owned()).or_default();
+            sum.0 += case["retrieved"].as_u64().expect("a number");
+            sum.1 += case["followed_by"]["goal"].as_u64().unwrap_or(0);
+        }
+    }
+    ledger
+}
+
 #[test]
 fn evidence_of_a_trace_agrees_with_its_ledger_case_by_case_in_any_order_of_files() {
     let at = names_in("trace");
-    recorded(&at("a"), "4");
-    recorded(&at("b"), "3");
     let [a, b] = [at("a.trace"), at("b.trace")];
+    let scores = (4..20).any(|seed| {
+        recorded(&at("a"), &seed.to_string());
+        in_ledger(&a).values().any(|(_, goals)| *goals > 0)
+    });
+    assert!(scores, "in none of 16 matches a goal after a case");
+    recorded(&at("b"), "3");
     let evidence = |files: &[&str], out: &str| {
         done(&[&["cases", "evidence", "--league", "division-b", "--out", &at(out)], files].concat());
         at(out)
     };
-    let mut ledger = BTreeMap::<String, (u64, u64)>::new();
-    for file in [&a, &b] {
-        let replayed: Value = serde_json::from_str(&done(&["replay", file, "--json"])).expect("JSON");
-        for team in ["blue", "yellow"] {
-            for case in replayed["cases"][team]["cases"].as_array().expect("a list") {
-                let sum = ledger.entry(case["case"].as_str().expect("a name").to_owned()).or_default();
-                sum.0 += case["retrieved"].as_u64().expect("a number");
-                sum.1 += case["followed_by"]["goal"].as_u64().unwrap_or(0);
-            }
-        }
+    let mut ledger = in_ledger(&a);
+    for (case, (plays, goals)) in in_ledger(&b) {
+        let sum = ledger.entry(case).or_default();
+        *sum = (sum.0 + plays, sum.1 + goals);
     }
-    assert!(ledger.values().any(|(_, goals)| *goals > 0) && ledger.len() > 5, "{ledger:?}");
+    assert!(ledger.len() > 5, "{ledger:?}");
     let both = evidence(&[&a, &b], "both.jsonl");
     assert_eq!(counted(&both), ledger);
     let text = |file: &str| fs::read_to_string(file).expect("evidence");
