@@ -49,6 +49,15 @@ impl Drop for Copy {
     }
 }
 
+/// A firmware build in a copy, into this workspace's target directory; the arguments name what is built.
+fn build(copy: &Copy, board: &Board, what: &[&str]) {
+    let toolchain = ensure_target_of(&copy.0, &board.target).unwrap_or_else(|error| panic!("{error}"));
+    let mut build = toolchain.cargo(&copy.0, "build");
+    build.args(["--profile", "firmware", "--package", &board.package, "--target-dir"]);
+    build.arg(target_dir(&workspace_root())).args(board.profile().into_iter().flatten()).args(what);
+    assert!(build.status().expect("cargo starts").success(), "{} does not build", board.name);
+}
+
 fn git(directory: &Path, arguments: &[&str]) -> String {
     let output = Command::new("git").current_dir(directory).args(arguments).output().expect("git starts");
     assert!(output.status.success(), "git {arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
@@ -62,12 +71,8 @@ fn built(chip: &str) -> (Sizes, Vec<(u32, u32, String)>) {
     new_board(&copy.0, &name, chip).unwrap();
     let manifest = fs::read_to_string(copy.0.join("firmware/boards").join(&name).join("Cargo.toml")).unwrap();
     let board = Board::parse(&name, &manifest).unwrap();
-    let toolchain = ensure_target_of(&copy.0, &board.target).unwrap_or_else(|error| panic!("{error}"));
+    build(&copy, &board, &[]);
     let into = target_dir(&workspace_root());
-    let mut build = toolchain.cargo(&copy.0, "build");
-    build.args(["--profile", "firmware", "--package", &board.package, "--target-dir"]).arg(&into);
-    build.args(board.profile().into_iter().flatten());
-    assert!(build.status().expect("cargo starts").success(), "{name} does not build");
     let firmware = board.firmware.unwrap();
     let image = into.join(&board.target).join("firmware").join(&firmware.image);
     let bytes = fs::read(&image).unwrap();
@@ -100,6 +105,25 @@ fn a_skeleton_builds_and_touches_its_own_directory_and_one_line_elsewhere() {
     touches_one_line_elsewhere("stm32f407vg", &changes);
     // A whole robot, not an empty program: the brain and its cases are in it.
     assert!(sizes.flash > 100_000, "{}", sizes.flash);
+}
+
+#[test]
+fn the_port_of_the_page_builds_from_the_skeleton_with_its_examples() {
+    let copy = Copy::new("port");
+    new_board(&copy.0, "mine", "stm32f407vg").unwrap();
+    let directory = copy.0.join("firmware/boards/mine");
+    let page = fs::read_to_string(copy.0.join("docs/port.md")).unwrap();
+    let files = page.split("```rust ").skip(1).filter_map(|rest| rest.split("```").next()?.split_once('\n'));
+    for (name, text) in files {
+        fs::create_dir_all(directory.join(name).parent().unwrap()).unwrap();
+        fs::write(directory.join(name), text).unwrap();
+    }
+    let change = page.split("```diff\n").nth(1).unwrap().split("```").next().unwrap();
+    fs::write(copy.0.join("port.diff"), change).unwrap();
+    git(&copy.0, &["apply", "--directory", "firmware/boards/mine", "port.diff"]);
+    fs::remove_file(directory.join("build.rs")).unwrap();
+    let manifest = fs::read_to_string(directory.join("Cargo.toml")).unwrap();
+    build(&copy, &Board::parse("mine", &manifest).unwrap(), &["--bins", "--examples"]);
 }
 
 #[test]

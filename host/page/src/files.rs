@@ -46,6 +46,7 @@ files! {
     "timeline.js": SCRIPT,
     "match.js": SCRIPT,
     "health.js": SCRIPT,
+    "spectrum.js": SCRIPT,
     "plots.js": SCRIPT,
     "playon.js": SCRIPT,
     "plot.js": SCRIPT,

@@ -6,7 +6,7 @@ use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use serde::Serialize;
 use thiserror::Error;
@@ -68,6 +68,7 @@ pub struct Page {
     seats: Arc<AtomicUsize>,
     parameters: Arc<Mutex<String>>,
     snapshots: Arc<Mutex<String>>,
+    spectrum: Arc<OnceLock<serde_json::Value>>,
     pushed: u64,
     left_out: u64,
     _server: Server,
@@ -88,6 +89,7 @@ impl Page {
         let (asks, requests) = sync_channel(REQUESTS_MAX);
         let seats = Arc::new(AtomicUsize::new(0));
         let [parameters, snapshots] = [(); 2].map(|()| Arc::new(Mutex::new(String::from("[]"))));
+        let spectrum = Arc::default();
         let shared = Shared {
             port: address.port(),
             settings,
@@ -97,6 +99,7 @@ impl Page {
             asks,
             parameters: parameters.clone(),
             snapshots: snapshots.clone(),
+            spectrum: Arc::clone(&spectrum),
             seats: seats.clone(),
         };
         let server = Server::start(listener, shared).map_err(failed)?;
@@ -109,6 +112,7 @@ impl Page {
             seats,
             parameters,
             snapshots,
+            spectrum,
             pushed: 0,
             left_out: 0,
             _server: server,
@@ -157,6 +161,13 @@ impl Page {
     /// Passes the kept moments of the simulated field to the page, as a JSON list.
     pub fn set_snapshots(&self, snapshots: String) {
         *self.snapshots.lock().unwrap_or_else(PoisonError::into_inner) = snapshots;
+    }
+
+    /// Passes the power on the radio's channels to the page, once: `sweeps`, `counts` of channels 0 on, MHz
+    /// above 2,400, and the team's `channel`.
+    pub fn set_spectrum(&self, spectrum: serde_json::Value) {
+        // A second one is not shown: a scan is measured before the match.
+        let _ = self.spectrum.set(spectrum);
     }
 
     /// Hands the moment of a recording that is sent to the network to all viewers. Never waits.

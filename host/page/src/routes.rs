@@ -63,6 +63,7 @@ fn state(shared: &Shared, head: &Head) -> Answer {
         "powers": settings.powers,
         "may_ask": shared.may_ask(head.asked("token")),
         "situations": shared.explanations.situations(),
+        "spectrum": shared.spectrum.get(),
         "span": span,
         "life": generation,
     });

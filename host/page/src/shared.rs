@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicUsize;
 use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::thread;
 use std::time::Duration;
 
@@ -18,6 +18,8 @@ pub(crate) struct Shared {
     pub(crate) parameters: Arc<Mutex<String>>,
     /// Kept moments of the simulated field, as a JSON list.
     pub(crate) snapshots: Arc<Mutex<String>>,
+    /// Power on the radio's channels, where it was measured.
+    pub(crate) spectrum: Arc<OnceLock<serde_json::Value>>,
     pub(crate) port: u16,
     pub(crate) settings: PageSettings,
     pub(crate) explanations: Arc<dyn ExplanationService>,

@@ -275,6 +275,19 @@ fn a_problem_is_explained_and_a_moment_frozen() {
 }
 
 #[test]
+fn the_state_has_the_scan_of_the_channels_that_the_program_passed() {
+    let page = open(Powers::None);
+    assert!(get(page.address(), "/api/state", "").1.contains(r#""spectrum":null"#));
+    page.set_spectrum(serde_json::json!({ "sweeps": 5, "counts": [0, 5], "channel": 1, "quietest": [0] }));
+    let (status, state) = get(page.address(), "/api/state", "");
+    assert_eq!(status, 200);
+    assert!(
+        state.contains(r#""spectrum":{"channel":1,"counts":[0,5],"quietest":[0],"sweeps":5}"#),
+        "{state}"
+    );
+}
+
+#[test]
 fn the_error_of_a_taken_port_suggests_another() {
     let page = open(Powers::None);
     let settings = PageSettings { listen: page.address(), ..settings(Powers::None) };

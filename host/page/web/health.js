@@ -4,6 +4,7 @@ import { byId, el, fill, number } from "./dom.js";
 import { buildLog, showLog } from "./log.js";
 import { buildPlot, showPlot } from "./plot.js";
 import { drawPlots, plotPart } from "./plots.js";
+import { spectrum } from "./spectrum.js";
 import { choose, store } from "./store.js";
 
 export function showHealth() {
@@ -11,13 +12,15 @@ export function showHealth() {
   const scene = store.scene;
   if (tab.hidden || !scene) return;
   if (!tab.firstChild) {
-    tab.append(el("h2", {}, "Robots"), el("div", { id: "glance" }), el("h2", {}, "Links"), el("div", { id: "vitals" }), el("h2", {}, "Cameras"), el("div", { id: "cameras" }), el("h2", {}, "Plot"), ...buildPlot(),
+    tab.append(el("h2", {}, "Robots"), el("div", { id: "glance" }), el("h2", {}, "Links"), el("div", { id: "vitals" }), el("div", { id: "spectrum" }), el("h2", {}, "Cameras"), el("div", { id: "cameras" }), el("h2", {}, "Plot"), ...buildPlot(),
       el("h2", {}, "Program log"), ...buildLog(), el("h2", {}, "Course of the match"), el("div", { id: "plots" }));
   }
   const robots = scene.robots.filter((robot) => robot.vitals);
   const second = Math.floor(scene.t * 2);
   fill(byId("glance"), `${second}`, () => glance(scene.glance ?? []));
   fill(byId("vitals"), `${second} ${robots.length}`, () => vitals(robots));
+  const channels = store.state.spectrum;
+  fill(byId("spectrum"), JSON.stringify(channels ?? null), () => (channels ? spectrum(channels) : []));
   fill(byId("cameras"), `${second}`, () => cameras(scene.cameras ?? []));
   showPlot(scene);
   showLog();

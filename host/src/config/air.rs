@@ -18,11 +18,16 @@ pub struct AirSettings {
 }
 
 impl AirSettings {
+    /// The team's channel, MHz above 2,400.
+    pub fn channel_of(&self, team: TeamId) -> u8 {
+        self.channel.unwrap_or(RadioPlan::of_team(team).channel)
+    }
+
     /// The plan of a team with that key, by which its radios have addresses of their own.
     pub fn plan(&self, team: TeamId, key: TeamKey) -> RadioPlan {
         let default = RadioPlan::of_team(team);
         RadioPlan {
-            channel: self.channel.unwrap_or(default.channel),
+            channel: self.channel_of(team),
             megabits: self.rate.unwrap_or(default.megabits),
             address: key.of_team().team().radio_address(),
         }

@@ -17,7 +17,7 @@ use clap::Args;
 use hil_sim::small_size::Parameters;
 use host::config::{Calibration, RobotLink, TeamConfig, TeamSettings};
 use host::run::{CONFIG_LEN_MAX, OutputFiles, Program, RunSettings, VirtualRobots};
-use protocol::RobotId;
+use protocol::{RobotId, TeamId};
 use ssl::net::addresses;
 
 use crate::Failure;
@@ -29,6 +29,7 @@ use crate::args::{DirectoryArgs, SettingsArgs};
 use crate::destination::{self, FileKind, check_recording};
 use crate::library;
 use crate::output::{note, print_text, printable_path};
+use crate::robot::scan::Spectrum;
 use crate::robot_description::ensure_built_for;
 use crate::stop::stopped_by_hand;
 use failure::ControlError;
@@ -145,6 +146,10 @@ pub(crate) struct ControlArgs {
     /// this they may ask for HALT only.
     #[arg(long, conflicts_with = "headless")]
     live_parameters: bool,
+    /// Power on the radio's channels, as `onetwo robot scan --json` printed it before the match: the page's
+    /// tab Health plots it, with our channel marked.
+    #[arg(long, value_name = "FILE", conflicts_with = "headless")]
+    scan: Option<PathBuf>,
     /// Print our robots at a glance every so many seconds: cameras, radio, battery, faults, and what is not
     /// as it should be.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
@@ -177,7 +182,7 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         note!("the team's settings are in {}", printable_path(path));
         return Ok(ExitCode::SUCCESS);
     }
-    let inputs = [&args.config, &args.key_file, &args.learned, &args.cases.directory.library];
+    let inputs = [&args.config, &args.key_file, &args.learned, &args.cases.directory.library, &args.scan];
     let inputs: Vec<_> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     check_recording(args.record.as_deref(), &inputs)?;
     if let Some(learned) = &args.learned {
@@ -189,11 +194,14 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         None => (0..by_default).filter_map(RobotId::new).collect(),
     };
     let cases = Cases::choose(&args.cases, config.league)?;
+    let spectrum = args.scan.as_deref().map(Spectrum::read).transpose()?;
+    let channel = config.air.channel_of(TeamId::of(config.colour));
     let page_settings = (!args.headless).then_some(PageSettings {
         args: &args.page,
         live_parameters: args.live_parameters,
         library: cases.library_handle,
         retrieval: cases.settings,
+        spectrum: spectrum.map(|spectrum| spectrum.to_page(channel)),
     });
     let settings = RunSettings {
         config: &config,

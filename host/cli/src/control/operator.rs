@@ -25,6 +25,8 @@ pub(super) struct PageSettings<'a> {
     pub(super) live_parameters: bool,
     pub(super) library: Option<LibraryHandle>,
     pub(super) retrieval: casebase::RetrievalSettings,
+    /// Power on the radio's channels, for the page.
+    pub(super) spectrum: Option<serde_json::Value>,
 }
 
 /// A terminal, and a page beside it.
@@ -181,12 +183,15 @@ struct Dashboard {
 impl Dashboard {
     /// Opens the page. If it cannot be opened, the error is printed and the robots are controlled without it.
     fn open(settings: PageSettings<'_>, title: String) -> Option<Self> {
-        let PageSettings { args, live_parameters, library, retrieval } = settings;
+        let PageSettings { args, live_parameters, library, retrieval, spectrum } = settings;
         let powers = if live_parameters { Powers::Tune } else { Powers::Halt };
         let page = args
             .open(title, false, powers, CaseExplanations::new(library, retrieval))
             .map_err(|error| note!("page     there is none: {error}"))
             .ok()?;
+        if let Some(spectrum) = spectrum {
+            page.set_spectrum(spectrum);
+        }
         Some(Self {
             page,
             composer: Composer::new(library.as_ref(), program_log()),

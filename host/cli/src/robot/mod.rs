@@ -7,7 +7,7 @@ mod calibrate;
 mod derived;
 mod fit;
 mod measurements;
-mod scan;
+pub(crate) mod scan;
 mod show;
 
 use std::fmt::Write as _;

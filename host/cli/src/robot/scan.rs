@@ -2,6 +2,7 @@
 //! it (protocol/SPEC.md: StationMessage). Only while no host speaks: a base station in play refuses.
 
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -9,6 +10,7 @@ use host::config::RobotLink;
 use host::radio::To;
 use host::shell::{Link as _, SerialLink};
 use protocol::station::{self, CHANNEL_MAX, CHANNEL_MIN, SCANNED, StationMessage};
+use serde::Deserialize;
 use serde_json::json;
 
 use crate::Failure;
@@ -42,7 +44,50 @@ pub(crate) enum ScanError {
         "the base station at {0} does not answer: is its image of this release, its chip wired, and the line's rate right?"
     )]
     Silent(String),
+    /// The file of a scan cannot be read.
+    #[error("{}: {error}", foreign::printable_path(.0), error = .1)]
+    Unreadable(PathBuf, std::io::Error),
+    /// It is none.
+    #[error("{}: no scan ({why}); write one with `onetwo robot scan --robots LINK --json`", foreign::printable_path(.0), why = .1)]
+    NoScan(PathBuf, String),
 }
+
+/// Power on the channels, as `--json` prints it.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Spectrum {
+    sweeps: u8,
+    /// Sweeps with power, for channels 0 on.
+    counts: Vec<u8>,
+}
+
+impl Spectrum {
+    /// Reads the output of `robot scan --json` from a file.
+    pub(crate) fn read(path: &Path) -> Result<Self, ScanError> {
+        let text = foreign::read_text(path, SCAN_LEN_MAX)
+            .map_err(|error| ScanError::Unreadable(path.to_owned(), error))?;
+        Self::parse(&text).map_err(|why| ScanError::NoScan(path.to_owned(), why))
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let scan: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        if scan.sweeps == 0 || scan.counts.is_empty() || scan.counts.len() > SCANNED {
+            return Err(format!("{} sweeps of {} channels", scan.sweeps, scan.counts.len()));
+        }
+        match (0_u8..).zip(&scan.counts).find(|(_, count)| **count > scan.sweeps) {
+            Some((at, count)) => Err(format!("channel {at}: power in {count} of {} sweeps", scan.sweeps)),
+            None => Ok(scan),
+        }
+    }
+
+    /// What the page shows, with the team's channel.
+    pub(crate) fn to_page(&self, channel: u8) -> serde_json::Value {
+        let quietest = quietest(&self.counts);
+        json!({ "sweeps": self.sweeps, "counts": self.counts, "quietest": quietest, "channel": channel })
+    }
+}
+
+/// Longest file that is read, bytes: 84 counts take some 400.
+const SCAN_LEN_MAX: u64 = 10_000;
 
 /// Longest time of a sweep in the base station, and of all besides.
 const SWEEP_MAX: Duration = Duration::from_millis(120);
@@ -148,6 +193,19 @@ mod tests {
             );
             assert!(named[..at].iter().all(|known| known.abs_diff(*channel) >= APART_MIN), "{named:?}");
         }
+    }
+
+    #[test]
+    fn a_scan_is_read_as_it_was_printed_and_others_are_refused() {
+        let scan = Spectrum::parse(&as_json(50, &spectrum())).unwrap();
+        assert_eq!((scan.sweeps, scan.counts), (50, spectrum()));
+        let wrong = ["", "{}", r#"{"sweeps":0,"counts":[0]}"#, r#"{"sweeps":5,"counts":[]}"#];
+        for text in wrong {
+            assert!(Spectrum::parse(text).is_err(), "{text}");
+        }
+        let error = Spectrum::parse(r#"{"sweeps":5,"counts":[0,6]}"#).unwrap_err();
+        assert_eq!(error, "channel 1: power in 6 of 5 sweeps");
+        assert!(Spectrum::parse(&as_json(5, &[0; SCANNED + 1])).is_err());
     }
 
     #[test]
