@@ -333,7 +333,7 @@ fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
         let speed = if belief.is_placing() { PLACING_SPEED } else { HOLDING.speed };
         FreeLimits { speed, acceleration: HOLDING.acceleration * drive.gentle, ..HOLDING }
     } else {
-        LIMITS
+        FreeLimits { acceleration: LIMITS.acceleration * drive.gentle, ..LIMITS }
     };
     let limits = capped(limits, belief);
     let stop = if belief.game.phase == Phase::Stop { STOP_SPEED - STOP_SPEED_SLACK } else { f32::INFINITY };
