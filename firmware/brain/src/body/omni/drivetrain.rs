@@ -34,6 +34,8 @@ pub struct Drivetrain {
     step: f32,
     /// The path in use; `None` while the robot stands.
     under_way: Option<CurrentPath>,
+    /// Phase whose regions that path leaves, if it does: another phase may not have them.
+    escapes: Option<Phase<Side>>,
     carried: Carried<Field>,
     /// Instructions that inputs and choices took in this step.
     spent: u32,
@@ -91,7 +93,8 @@ impl Drivetrain {
         let keeps = 1.0 - step * FORGETTING_RATE;
         self.moves_on = (self.moves_on + (self.velocity - belief.velocity) * step) * keeps;
         self.turns_on = (self.turns_on + (self.angular - belief.angular) * step) * keeps;
-        let under_way = self.under_way.take();
+        let holds = self.escapes.is_none_or(|phase| phase == belief.game.phase);
+        let under_way = self.under_way.take().filter(|_| holds);
         match intent {
             Intent::Stand { face } => self.stand(belief, step, face),
             Intent::KeepPath => match under_way {
@@ -227,6 +230,8 @@ impl Drivetrain {
             self.path_age = path_age.saturating_add(1);
         }
         self.under_way = Some(CurrentPath { drive: *drive, kept: Kept::of(&path, drive) });
+        let escapes = matches!(path.verdict, RouteVerdict::Escape { .. });
+        self.escapes = escapes.then_some(belief.game.phase);
         let there = rests && from.distance(path.goal) < AT_PLACE;
         // While we place the ball the others keep off, and the step has no time for it.
         let velocity = match path.next.velocity {
@@ -328,7 +333,7 @@ fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
         let speed = if belief.is_placing() { PLACING_SPEED } else { HOLDING.speed };
         FreeLimits { speed, acceleration: HOLDING.acceleration * drive.gentle, ..HOLDING }
     } else {
-        LIMITS
+        FreeLimits { acceleration: LIMITS.acceleration * drive.gentle, ..LIMITS }
     };
     let limits = capped(limits, belief);
     let stop = if belief.game.phase == Phase::Stop { STOP_SPEED - STOP_SPEED_SLACK } else { f32::INFINITY };
@@ -450,5 +455,21 @@ mod tests {
         }
         let beyond = place.x() - b.pose.position.x();
         assert!(beyond < 0.12, "{beyond} m beyond its place");
+    }
+
+    #[test]
+    fn a_path_out_of_a_region_is_not_kept_in_a_phase_without_it() {
+        for (phase, goes_on) in [(Phase::Stop, true), (Phase::Run, false)] {
+            let mut b = belief((0.0, 0.0, 0.0), (0.3, 0.0));
+            b.game.phase = Phase::Stop;
+            let mut drivetrain = Drivetrain::default();
+            let goes = Drive::avoiding(Point::new(0.3, 1.0), Angle::ZERO).into();
+            let left = drivetrain.actuate(Instant(10_000), &b, goes);
+            assert!(left.twist.linear.x() < 0.0, "off the ball of a stopped game: {left:?}");
+            drivetrain.set_speed_order(&b, left.twist);
+            b.game.phase = phase;
+            let kept = drivetrain.actuate(Instant(20_000), &b, Intent::KeepPath);
+            assert_eq!(kept.twist.linear.norm() > left.twist.linear.norm(), goes_on, "{phase:?}: {kept:?}");
+        }
     }
 }

@@ -45,7 +45,8 @@ pub struct Drive {
     pub kick: OmniKick,
     /// Whether it is armed: the robot faces the direction of the kick.
     pub armed: bool,
-    /// Share of the acceleration that a held ball is moved with.
+    /// Share of the acceleration that is planned with, with or without the ball; more than 1 for a step to
+    /// the ball.
     pub gentle: f32,
     /// Instructions that choosing the target took, by the search's estimate: its path has so much less.
     pub effort: u32,
