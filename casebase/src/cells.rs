@@ -1,8 +1,10 @@
-//! `cells`: 32-bit occupancy mask around the ball; rejects empty opponent scopes cheaply.
+//! `cells`: squares and strips around the ball; those that a scope overlaps reject empty opponent scopes
+//! cheaply.
 //!
 //! The plane around the ball is cut into squares, which repeat every 8 along x and every 4 along y, so that
 //! 32 bits name them all. Where the squares that an opponent scope overlaps and those that contain opponents
-//! have none in common, the scope is empty; otherwise it must be tested.
+//! have none in common, the scope is empty; otherwise it must be tested. Words of cases
+//! ([`crate::table::Word`]) have strips across x and y in place of squares.
 
 use core::ops::RangeInclusive;
 
@@ -29,11 +31,29 @@ pub fn cells_of(centre: PointMm, scope: Scope) -> u32 {
     cells
 }
 
+/// The strip across one axis in which a coordinate relative to the ball lies, mm: its number, 0–31. The
+/// first and the last reach to infinity.
+#[inline]
+pub(crate) fn strip_of(at: i32) -> usize {
+    ((at >> STRIP_BITS) + STRIPS / 2).clamp(0, STRIPS - 1) as usize
+}
+
+/// The strips across one axis that a scope of `radius` around `at` overlaps at the paper's threshold, as
+/// bits.
+pub fn strips_of(at: i32, radius: i32) -> u32 {
+    let reach = reach(radius);
+    (strip_of(at - reach)..=strip_of(at + reach)).fold(0, |strips, strip| strips | 1 << strip)
+}
+
 /// Squares along one axis that may overlap a scope of `radius` around `at`.
 fn squares(at: i32, radius: i32) -> RangeInclusive<i32> {
-    // Beyond the border of a scope by more than the rounding error of single precision.
-    let reach = (f64::from(radius) * (f64::from(SCOPE_EXPONENT) * 1.001)) as i32 + 1;
+    let reach = reach(radius);
     (at - reach) >> EDGE_BITS..=(at + reach) >> EDGE_BITS
+}
+
+/// Half the width of a scope, mm: beyond its border by more than the rounding error of single precision.
+fn reach(radius: i32) -> i32 {
+    (f64::from(radius) * (f64::from(SCOPE_EXPONENT) * 1.001)) as i32 + 1
 }
 
 /// Distance along one axis from `at` to a square, in radii; 0 inside.
@@ -49,6 +69,10 @@ fn cell(column: i32, row: i32) -> u32 {
 
 /// Squares of 2^9 = 512 mm, about the radius of a scope: they reject more scopes than squares of 1024 mm.
 const EDGE_BITS: u32 = 9;
+/// Strips of 2^7 = 128 mm.
+const STRIP_BITS: u32 = 7;
+/// Number of strips across an axis: 2 m to both sides of the ball.
+const STRIPS: i32 = 32;
 
 #[cfg(test)]
 mod tests {
@@ -56,7 +80,7 @@ mod tests {
     use crate::testing::Stream;
 
     #[test]
-    fn a_point_in_a_scope_lies_in_one_of_its_squares() {
+    fn a_point_in_a_scope_lies_in_one_of_its_squares_and_in_its_strips() {
         let mut stream = Stream::new(9);
         let mut below = |end: i32| stream.below(end as u64) as i32;
         let (mut inside, mut apart) = (0, 0);
@@ -65,11 +89,15 @@ mod tests {
             let scope = Scope { x: 1 + below(1000), y: 1 + below(1000) };
             let point = PointMm::new(centre.x + below(2400) - 1200, centre.y + below(2400) - 1200);
             let shares = cells_of(centre, scope) & cell_of(point) != 0;
+            let in_strips = strips_of(centre.x, scope.x) >> strip_of(point.x)
+                & strips_of(centre.y, scope.y) >> strip_of(point.y)
+                & 1
+                != 0;
             if scope.exponent(point.minus(centre)) < SCOPE_EXPONENT {
                 inside += 1;
-                assert!(shares, "{point:?} in {scope:?} around {centre:?}");
+                assert!(shares && in_strips, "{point:?} in {scope:?} around {centre:?}");
             }
-            apart += u32::from(!shares);
+            apart += u32::from(!shares && !in_strips);
         }
         assert!(inside > 2_000 && apart > 5_000, "{inside} inside, {apart} apart");
     }

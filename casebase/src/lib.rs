@@ -15,6 +15,7 @@
 #![no_std]
 
 pub mod action;
+mod best_search;
 mod case;
 mod cells;
 mod correspondence;
@@ -36,13 +37,14 @@ pub mod table;
 mod terms;
 #[cfg(test)]
 mod testing;
+mod word_search;
 
 pub use action::{
     Action, CaseKick, CaseRobot, FieldMm, KickAim, KickId, OPPONENTS_MAX, Pass, Primitive, TEAMMATES_MAX,
     TurnTarget,
 };
 pub use case::Case;
-pub use cells::cells_of;
+pub use cells::{cells_of, strips_of};
 pub use explain::{CaseVerdict, explain};
 pub use geometry::GoalEnd;
 pub use index::Grid;

@@ -184,8 +184,7 @@ pub(crate) fn empty_scopes(
 ) -> Option<u32> {
     let mut empty = 0;
     for scope in scopes {
-        if scope.cells & cells == 0 || !opponents.iter().any(|opponent| scope.holds(moved, *opponent, limit))
-        {
+        if scope.cells & cells == 0 || !scope.holds_any(moved, opponents, limit) {
             if empty == most {
                 return None;
             }

@@ -9,7 +9,7 @@ use protocol::RobotId;
 
 use crate::action::TEAMMATES_MAX;
 use crate::case::{Case, widen};
-use crate::cells::cell_of;
+use crate::cells::{cell_of, strip_of};
 use crate::correspondence::{Distances, Nearest, Players, assign, nearest};
 use crate::leg::{freedom, is_blocking};
 use crate::path::{empty_scopes, is_crisply_blocked, least_exponent};
@@ -18,8 +18,8 @@ use crate::problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
 use crate::rank::{Correspondence, Key, Match};
 use crate::settings::{CorrespondenceRule, CostRule, FreePathRule, OutOfField, RetrievalSettings, ScopeRule};
 use crate::stored::Stored;
-use crate::table::{OpponentRecord, RecordHeader};
-use crate::{CaseRobot, PointMm};
+use crate::table::{OpponentRecord, RecordHeader, STRIPS};
+use crate::{CaseRobot, PointMm, Symmetry};
 
 /// A prepared problem: everything relative to the ball.
 pub(crate) struct Query<'p> {
@@ -31,6 +31,9 @@ pub(crate) struct Query<'p> {
     /// The squares around the ball that contain opponents.
     cells: u32,
 }
+
+/// The strips of all opponents across x and y, numbered as a word's bitmaps.
+pub(crate) type Strips = Vec<[usize; 2], PROBLEM_OPPONENTS_MAX>;
 
 /// The part of a problem that is tested against a case's record header.
 #[derive(Clone, Copy)]
@@ -88,6 +91,18 @@ impl Query<'_> {
         }
         let key = QueryKey { ball: ball.to_f32(), limit: settings.limit(), robots: teammates.len() };
         work(&Query { problem, settings, key, teammates: &teammates, opponents: &opponents, cells })
+    }
+
+    /// The opponents' strips across x and y around the ball, under a symmetry.
+    #[inline(always)]
+    pub(crate) fn strips(&self, symmetry: Symmetry) -> Strips {
+        let mut strips = Vec::new();
+        for place in &self.problem.opponents {
+            let PointMm { x, y } = symmetry.point(place.minus(self.problem.ball));
+            // The capacity is that of a problem's opponents: every push fits.
+            let _ = strips.push([strip_of(x), STRIPS / 2 + strip_of(y)]);
+        }
+        strips
     }
 
     /// Displacement of opponent scopes against the problem's ball, mm.

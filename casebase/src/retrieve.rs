@@ -5,18 +5,18 @@
 //! [`rank_order`](crate::rank_order). Cheap checks come first, and checks that cannot change the answer are
 //! skipped; the answer equals that of the plain order.
 
-use core::ops::ControlFlow;
-
 use protocol::CaseId;
 
+use crate::best_search::BestSearch;
 use crate::problem::Problem;
 use crate::query::{Found, Query};
-use crate::rank::{Key, Match, interval, key_order};
+use crate::rank::{Match, key_order};
 use crate::settings::{
     CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, RetrievalSettings, ScopeRule,
 };
 use crate::stored::Stored;
-use crate::table::{CaseBase, RecordHeader};
+use crate::table::CaseBase;
+use crate::word_search::{each_in_words, search_words};
 
 /// Result of a retrieval.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +51,9 @@ fn each_near<'q, 'a>(base: &'q CaseBase<'a>, query: &Query<'_>, visit: impl FnMu
     let goal = query.problem.defending;
     let listed = |id: usize| Stored::new(base, CaseId(id as u16));
     if CaseBase::index_serves(query.key.limit) {
+        if !base.words.is_empty() {
+            return each_in_words(base, query, visit);
+        }
         let (list, flip) = base.near(query.key.ball, goal);
         list.iter().filter_map(|id| listed(usize::from(*id) ^ flip)).for_each(visit);
     } else {
@@ -83,7 +86,11 @@ pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Retrieva
         if !CaseBase::index_serves(query.key.limit) {
             return retrieve(base, problem, settings).best;
         }
-        let mut search = BestSearch { base, query, class: Class(0), best: None };
+        let mut search = BestSearch::new(base, query);
+        if !base.words.is_empty() {
+            search_words(&mut search);
+            return search.best.map(Found::into_match);
+        }
         let key = query.key;
         let (mut list, flip) = base.near(key.ball, problem.defending);
         while let Some((id, rest)) = list.split_first() {
@@ -146,104 +153,3 @@ const PAPER: [u8; 8] = [
     ScopeRule::Translated as u8,
     FreePathRule::Crisp as u8,
 ];
-
-/// Conditions (from bit 10), then teammates (from bit 2), then three minus the interval: the ranking criteria
-/// before cost, in one number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Class(u32);
-
-impl Class {
-    /// Upper bound of a case's class, for any position of the ball.
-    #[inline]
-    fn promise(record_header: &RecordHeader) -> Self {
-        Self(u32::from(u16::from_le_bytes([record_header.teammates, record_header.opponents])) << 2 | 3)
-    }
-
-    /// The same with the ball in the interval of that exponent.
-    #[inline]
-    fn in_interval_of(self, exponent: f32) -> Self {
-        // Three minus the interval, in the two lowest bits.
-        Self(self.0 ^ u32::from(interval(exponent) & 3))
-    }
-
-    /// The same with `conditions` of its scopes empty.
-    #[inline]
-    fn without(self, conditions: u32) -> Self {
-        Self(self.0.wrapping_sub(conditions << 10))
-    }
-
-    #[inline]
-    fn conditions(self) -> u8 {
-        (self.0 >> 10) as u8
-    }
-
-    /// Number of conditions it could lose without falling behind `other`, which is no better.
-    #[inline]
-    fn conditions_above(self, other: Self) -> u32 {
-        self.0.wrapping_sub(other.0) >> 10
-    }
-}
-
-/// State of the search for the best candidate among cases with the ball in their scope.
-struct BestSearch<'q, 'a> {
-    base: &'q CaseBase<'a>,
-    query: &'q Query<'q>,
-    /// The class of the best candidate so far.
-    class: Class,
-    best: Option<Found>,
-}
-
-impl<'a> BestSearch<'_, 'a> {
-    /// Tests a case whose bound reaches the class of the best candidate. Breaks where neither it nor any case
-    /// with no higher bound can.
-    #[inline(always)]
-    fn consider(&mut self, case: CaseId, record_header: &'a RecordHeader, exponent: f32) -> ControlFlow<()> {
-        // Lists are sorted by falling bound.
-        let promise = Class::promise(record_header);
-        if promise < self.class {
-            return ControlFlow::Break(());
-        }
-        let allowed = promise.in_interval_of(exponent);
-        if allowed >= self.class
-            && let Some(scopes) = record_header.opponents(self.base.places)
-            && let Some(empty) = self.query.empty_scopes(scopes, allowed.conditions_above(self.class))
-        {
-            self.judge(case, record_header, exponent, allowed.without(empty));
-        }
-        ControlFlow::Continue(())
-    }
-
-    /// Tests a case whose class is at least the best candidate's, and replaces that candidate if this one is
-    /// better.
-    #[inline(never)]
-    fn judge(&mut self, id: CaseId, record_header: &'a RecordHeader, exponent: f32, class: Class) {
-        let Self { base, query, .. } = *self;
-        let case = &Stored { base, id, record_header };
-        let Some(nearest) = query.nearest(case) else { return };
-        if class == self.class
-            && let Some(candidate) = &self.best
-            && nearest.players.cost > candidate.key.cost
-        {
-            return;
-        }
-        if query.is_crisply_blocked(case) || query.unmet_demand(case).is_some() {
-            return;
-        }
-        let Some(players) = query.least_sum(case, nearest) else { return };
-        let key = Key {
-            conditions: class.conditions(),
-            teammates: case.teammates(),
-            free: 1.0,
-            exponent,
-            cost: players.cost,
-            case: case.id.0,
-        };
-        if class == self.class
-            && let Some(candidate) = &self.best
-            && key_order(&key, &candidate.key, query.settings).is_ge()
-        {
-            return;
-        }
-        (self.class, self.best) = (class, Some(Found { key, players: players.ids }));
-    }
-}

@@ -22,7 +22,7 @@ const EXCUSED_MAX: f64 = 0.01;
 
 #[test]
 fn random_libraries_are_answered_as_the_oracle_answers() {
-    for (seed, size) in [(1, 1), (2, 5), (3, 20), (4, 20), (5, 60), (6, 60), (7, 120), (8, 250)] {
+    for (seed, size) in [(1, 1), (2, 5), (3, 20), (4, 20), (5, 60), (6, 60), (7, 120), (8, 250), (9, 500)] {
         let trial = Trial::of_random_library(seed, size);
         trial.compare(&RetrievalSettings::default(), &Rules::default());
     }

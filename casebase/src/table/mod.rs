@@ -15,9 +15,12 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 mod record_header;
 mod validate;
+mod word;
 
 pub use record_header::{OpponentRecord, RawLeg, RecordHeader};
 pub use validate::TableError;
+pub(crate) use word::NearWords;
+pub use word::{LISTS_OF_CELL, STRIPS, Word, WordSections};
 
 use crate::PointMm;
 use crate::action::{CaseKick, FieldMm, KickAim, KickId, Pass, Primitive, TEAMMATES_MAX};
@@ -30,6 +33,9 @@ use crate::symmetry::Symmetry;
 pub struct CaseBase<'a> {
     bytes: &'a [u8],
     pub(crate) header: &'a Header,
+    pub(crate) words: &'a [Word],
+    pub(crate) bitmaps: &'a [u32],
+    cell_masks: &'a [u32],
     pub(crate) groups: &'a [Group],
     pub(crate) record_headers: &'a [RecordHeader],
     pub(crate) points: &'a [[i32; 2]],
@@ -90,18 +96,36 @@ impl<'a> CaseBase<'a> {
         self.bytes
     }
 
-    /// Every case under `goal` whose ball scope may contain `ball`: ids, with the bits to flip in them.
+    /// Every case under `goal` whose ball scope may contain `ball`: ids, with the bits to flip in them. None
+    /// in a table with words.
     #[inline]
-    pub(crate) fn near(&self, [x, y]: [f32; 2], goal: GoalEnd) -> (&[u16], usize) {
+    pub(crate) fn near(&self, ball: [f32; 2], goal: GoalEnd) -> (&[u16], usize) {
+        let (cell, flip) = self.cell(ball, goal);
+        let bounds = self.cell_starts.get(cell..).and_then(|starts| starts.first_chunk());
+        let list = bounds.and_then(|&[from, to]| self.cell_cases.get(from as usize..to as usize));
+        (list.unwrap_or(&[]), usize::from(flip))
+    }
+
+    /// The same of a table with words: their lists, and the symmetry that leads from their cases to those
+    /// under `goal`.
+    #[inline]
+    pub(crate) fn words_near(&self, ball: [f32; 2], goal: GoalEnd) -> (NearWords<'_>, Symmetry) {
+        let (cell, flip) = self.cell(ball, goal);
+        let bounds = self.cell_starts.get(cell * LISTS_OF_CELL..).and_then(|starts| starts.first_chunk());
+        let bounds = bounds.unwrap_or(&[0; LISTS_OF_CELL + 1]);
+        let near = NearWords { bounds, words: self.cell_cases, masks: self.cell_masks };
+        (near, Symmetry::from_bits(flip))
+    }
+
+    /// The cell of a ball, and the bits to flip in the ids of its cases.
+    #[inline]
+    fn cell(&self, [x, y]: [f32; 2], goal: GoalEnd) -> (usize, u16) {
         let (x, other_goal) = match goal {
             GoalEnd::Negative => (x, Symmetry::Identity),
             GoalEnd::Positive => (-x, Symmetry::AcrossY),
         };
         let (y, other_side) = if y < 0.0 { (-y, Symmetry::AcrossX) } else { (y, Symmetry::Identity) };
-        let cell = self.header.grid.cell([x, y]);
-        let bounds = self.cell_starts.get(cell..).and_then(|starts| starts.first_chunk());
-        let list = bounds.and_then(|&[from, to]| self.cell_cases.get(from as usize..to as usize));
-        (list.unwrap_or(&[]), usize::from(other_goal.bits() | other_side.bits()))
+        (self.header.grid.cell([x, y]), other_goal.bits() | other_side.bits())
     }
 
     /// Returns whether the index was built for scopes that end at this exponent.
@@ -122,6 +146,9 @@ impl Default for CaseBase<'_> {
         Self {
             bytes: &[],
             header: &EMPTY_HEADER,
+            words: &[],
+            bitmaps: &[],
+            cell_masks: &[],
             groups: &[],
             record_headers: &[],
             points: &[],
@@ -134,8 +161,10 @@ impl Default for CaseBase<'_> {
     }
 }
 
-/// "o12c" and the version of the layout.
+/// "o12c" and the version of the layout without words.
 pub const MAGIC: [u32; 2] = [u32::from_ne_bytes(*b"o12c"), 3];
+/// The same of the layout with words, for large libraries.
+pub const MAGIC_WORDS: [u32; 2] = [MAGIC[0], 4];
 /// Maximum number of cells of the index along one axis.
 pub const GRID_MAX: u16 = 256;
 

@@ -43,10 +43,18 @@ impl OpponentRecord {
     /// Returns whether the scope, displaced by `moved`, contains a point relative to the ball, mm.
     #[inline(always)]
     pub(crate) fn holds(&self, moved: [f32; 2], point: [f32; 2], limit: f32) -> bool {
+        self.holds_any(moved, &[point], limit)
+    }
+
+    /// Returns whether it contains any of several points.
+    #[inline(always)]
+    pub(crate) fn holds_any(&self, moved: [f32; 2], points: &[[f32; 2]], limit: f32) -> bool {
         let centre = [f32::from(self.at[0]) + moved[0], f32::from(self.at[1]) + moved[1]];
-        let (dx, dy) = (point[0] - centre[0], point[1] - centre[1]);
         let [inverse_x, inverse_y] = self.inverse_scope;
-        gauss_exponent(dx, dy, inverse_x, inverse_y) < limit
+        points.iter().any(|point| {
+            let (dx, dy) = (point[0] - centre[0], point[1] - centre[1]);
+            gauss_exponent(dx, dy, inverse_x, inverse_y) < limit
+        })
     }
 }
 

@@ -3,8 +3,8 @@
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
 use super::{
-    CaseBase, GRID_MAX, Group, HASHED_FROM, Header, MAGIC, RawAction, RawLeg, RecordHeader, content_hash,
-    part,
+    CaseBase, GRID_MAX, Group, HASHED_FROM, Header, LISTS_OF_CELL, MAGIC, MAGIC_WORDS, RawAction, RawLeg,
+    RecordHeader, STRIPS, Word, WordSections, content_hash, part,
 };
 use crate::Grid;
 use crate::action::{KICKS_MAX, OPPONENTS_MAX, Primitive, TEAMMATES_MAX};
@@ -45,17 +45,24 @@ impl<'a> CaseBase<'a> {
         }
         let (header, rest) = bytes.split_at_checked(size_of::<Header>()).ok_or(TableError::Length)?;
         let header = Header::ref_from_bytes(header).map_err(|_| TableError::Length)?;
-        if header.magic != MAGIC {
-            return Err(TableError::Magic);
-        }
+        let (sections, rest) = match header.magic {
+            MAGIC => (&[][..], rest),
+            MAGIC_WORDS => section::<WordSections>(rest, 1)?,
+            _ => return Err(TableError::Magic),
+        };
+        let lengths = sections.first().map_or([0; 3], |of| [of.words, of.bitmaps, header.cell_cases]);
+        let (words, rest) = section(rest, lengths[0])?;
+        let (bitmaps, rest) = section(rest, lengths[1])?;
+        let (cell_masks, rest) = section(rest, lengths[2])?;
         let Grid { columns, rows, .. } = header.grid;
-        let cells = usize::from(columns) * usize::from(rows);
+        let lists = if sections.is_empty() { 1 } else { LISTS_OF_CELL };
+        let lists = lists * usize::from(columns) * usize::from(rows);
         let copies = header.groups.checked_mul(4).ok_or(TableError::Length)?;
         let (groups, rest) = section(rest, header.groups)?;
         let (record_headers, rest) = section(rest, copies)?;
         let (points, rest) = section(rest, header.points)?;
         let (kicks, rest) = section(rest, header.kicks)?;
-        let (cell_starts, rest) = section(rest, cells as u32 + 1)?;
+        let (cell_starts, rest) = section(rest, lists as u32 + 1)?;
         let (places, rest) = section(rest, header.places)?;
         let (cell_cases, rest) = section(rest, header.cell_cases)?;
         let (actions, rest) = section(rest, header.actions)?;
@@ -65,6 +72,9 @@ impl<'a> CaseBase<'a> {
         Ok(Self {
             bytes,
             header,
+            words,
+            bitmaps,
+            cell_masks,
             groups,
             record_headers,
             points,
@@ -170,7 +180,19 @@ impl<'a> CaseBase<'a> {
             && [cell_mm, cells_per_mm].iter().all(|scale| scale.is_finite() && *scale > 0.0)
             && corner.iter().all(|coordinate| coordinate.is_finite())
             && starts_are_sound
-            && self.cell_cases.iter().all(|case| usize::from(*case) < self.record_headers.len())
+            && self.cell_cases.iter().all(|listed| usize::from(*listed) < self.listed())
+            && self.words.iter().all(|word| self.word_is_sound(word))
+    }
+
+    /// Number of the things that the index's cells list: words, or cases.
+    fn listed(&self) -> usize {
+        if self.header.magic == MAGIC_WORDS { self.words.len() } else { self.record_headers.len() }
+    }
+
+    fn word_is_sound(&self, word: &Word) -> bool {
+        let bitmaps = self.bitmaps.get(word.bitmaps_at as usize..).unwrap_or(&[]);
+        bitmaps.len() >= STRIPS * usize::from(word.opponents)
+            && word.cases.iter().all(|case| usize::from(*case) < self.record_headers.len())
     }
 }
 

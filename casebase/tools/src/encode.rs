@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 
 use casebase::plan_simulation::{PlanStep, Script, plan_simulation};
 use casebase::table::{
-    Group, HASHED_FROM, Header, MAGIC, OpponentRecord, RawAction, RawKick, RawLeg, RecordHeader, content_hash,
+    Group, HASHED_FROM, Header, MAGIC, MAGIC_WORDS, OpponentRecord, RawAction, RawKick, RawLeg, RecordHeader,
+    WordSections, content_hash,
 };
 use casebase::{Action, CaseRobot, Demands, GoalEnd, PointMm, Scope, Symmetry, TurnTarget, cells_of};
 use zerocopy::IntoBytes;
@@ -54,8 +55,12 @@ pub(crate) fn encode(league: &CaseLeague, cases: &[Authored], symmetry: bool) ->
     let index = grid::build(league.field, cases, others);
     let field = league.field;
     let count = |length: usize| length as u32;
+    let (words, bitmaps) = (&index.words.list, &index.words.bitmaps);
+    let sections = WordSections { words: count(words.len()), bitmaps: count(bitmaps.len()) };
+    let (magic, sections) =
+        if words.is_empty() { (MAGIC, &[][..]) } else { (MAGIC_WORDS, sections.as_bytes()) };
     let mut header = Header {
-        magic: MAGIC,
+        magic,
         hash: 0,
         field: [
             field.length,
@@ -75,6 +80,10 @@ pub(crate) fn encode(league: &CaseLeague, cases: &[Authored], symmetry: bool) ->
         grid: index.grid,
     };
     let body = [
+        sections,
+        words.as_bytes(),
+        bitmaps.as_bytes(),
+        index.masks.as_bytes(),
         pools.groups.as_bytes(),
         pools.record_headers.as_bytes(),
         pools.points.as_bytes(),

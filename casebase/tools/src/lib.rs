@@ -30,6 +30,7 @@ mod sampled;
 pub mod self_blocking;
 mod skeleton;
 mod warnings;
+mod words;
 pub mod workbench;
 
 pub use codes::{CODES, CodeEntry, code, entry};

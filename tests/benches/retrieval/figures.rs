@@ -92,6 +92,7 @@ impl Figures {
         // The same problems: random ones are reported, without a budget (casebase/README.md).
         if *stored >= LARGE && *set == PLAYED {
             within("mean", best.mean, self.mean_allowed());
+            within("worst", f64::from(best.worst), LARGE_WORST);
         }
         if *stored >= LARGE {
             within("scan / retrieval, inverted,", 1.0 / self.ratio(), 1.0 / SCAN_RATIO);
@@ -119,5 +120,6 @@ const WORST: f64 = 12_000.0;
 const LARGE: usize = 10_000;
 const FIXED: u32 = 400;
 const PER_GATED: u32 = 60;
+const LARGE_WORST: f64 = 60_000.0;
 const SCAN_RATIO: f64 = 10.0;
 const BYTES: f64 = 96.0;
