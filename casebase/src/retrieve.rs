@@ -51,7 +51,7 @@ fn each_near<'q, 'a>(base: &'q CaseBase<'a>, query: &Query<'_>, visit: impl FnMu
     let goal = query.problem.defending;
     let listed = |id: usize| Stored::new(base, CaseId(id as u16));
     if CaseBase::index_serves(query.key.limit) {
-        if !base.words.is_empty() {
+        if cfg!(feature = "words") && !base.words.is_empty() {
             return each_in_words(base, query, visit);
         }
         let (list, flip) = base.near(query.key.ball, goal);
@@ -87,7 +87,7 @@ pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Retrieva
             return retrieve(base, problem, settings).best;
         }
         let mut search = BestSearch::new(base, query);
-        if !base.words.is_empty() {
+        if cfg!(feature = "words") && !base.words.is_empty() {
             search_words(&mut search);
             return search.best.map(Found::into_match);
         }

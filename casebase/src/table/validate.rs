@@ -47,7 +47,7 @@ impl<'a> CaseBase<'a> {
         let header = Header::ref_from_bytes(header).map_err(|_| TableError::Length)?;
         let (sections, rest) = match header.magic {
             MAGIC => (&[][..], rest),
-            MAGIC_WORDS => section::<WordSections>(rest, 1)?,
+            MAGIC_WORDS if cfg!(feature = "words") => section::<WordSections>(rest, 1)?,
             _ => return Err(TableError::Magic),
         };
         let lengths = sections.first().map_or([0; 3], |of| [of.words, of.bitmaps, header.cell_cases]);
@@ -186,7 +186,11 @@ impl<'a> CaseBase<'a> {
 
     /// Number of the things that the index's cells list: words, or cases.
     fn listed(&self) -> usize {
-        if self.header.magic == MAGIC_WORDS { self.words.len() } else { self.record_headers.len() }
+        if cfg!(feature = "words") && self.header.magic == MAGIC_WORDS {
+            self.words.len()
+        } else {
+            self.record_headers.len()
+        }
     }
 
     fn word_is_sound(&self, word: &Word) -> bool {

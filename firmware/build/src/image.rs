@@ -93,6 +93,9 @@ fn build_as(
     if program == Program::Udp {
         build.args(["--features", "ethernet"]);
     }
+    if program == Program::RetrievalBench {
+        build.args(["--features", "words"]);
+    }
     if let Program::Board(board) | Program::More(board, _) = program {
         build.args(board.profile().into_iter().flatten());
     }
