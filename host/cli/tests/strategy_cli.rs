@@ -167,8 +167,9 @@ fn the_python_team_plays_in_the_simulator_and_its_match_replays() {
     assert!(out.status.success(), "{stderr}");
     assert!(!stderr.contains("Traceback"), "{stderr}");
     let played: serde_json::Value = serde_json::from_str(&stdout).expect("JSON");
-    let shots = played["metrics"]["blue"]["shots"].as_u64();
-    assert!(shots.is_some_and(|shots| shots > 0), "{stdout}");
+    // Whether the match has a shot depends on its seed; that the team plays the ball does not.
+    let possessed_s = played["metrics"]["blue"]["attack"]["possessed_s"].as_f64();
+    assert!(possessed_s.is_some_and(|seconds| seconds > 5.0), "{stdout}");
     let trace = stem.with_extension("trace");
     let (_, records) = records(&trace);
     assert!(records.iter().filter(|record| record.kind == RecordKind::Orders).count() > 100);

@@ -148,7 +148,7 @@ fn a_match_fills_scenes_that_hold_against_the_truth() {
 #[test]
 fn a_retrieval_that_is_reported_can_be_explained_and_mostly_comes_to_the_same_case() {
     // Who plays by the rated list decides on cases more rarely.
-    let match_events = played(150, Tactics::ROUND_1).match_events;
+    let match_events = played(400, Tactics::ROUND_1).match_events;
     let library_handle = LibraryHandle::named("division-b").unwrap();
     let chosen = Chosen { settings: RetrievalSettings::default(), changed: Vec::new() };
     let (mut reported, mut same) = (0, 0);

@@ -68,9 +68,10 @@ fn budgets() -> Vec<(&'static str, String)> {
         (
             "the same with 10,000 stored cases",
             format!(
-                "≤ {} + {} per case in the ball gate; ≥ {} × fewer than a scan",
+                "mean ≤ {} + {} per case in the ball gate, worst ≤ {}; ≥ {} × fewer than a scan",
                 retrieval("FIXED"),
                 retrieval("PER_GATED"),
+                retrieval("LARGE_WORST"),
                 retrieval("SCAN_RATIO")
             ),
         ),

@@ -50,7 +50,7 @@ fn candidates(current: &Variant, explored: &Played, edits: &[(&str, Change)]) ->
     edits.iter().map(candidate).collect()
 }
 
-/// Matches of the authored library, and what an edit of its most frequent case makes of them.
+/// Matches of the authored library, and what edits of its two most frequent cases make of them.
 fn round(player: &mut impl for<'u> Player<MatchUnit<'u>>) -> String {
     let current = Variant::new(authored()).unwrap();
     let settings = settings(false);
@@ -59,7 +59,7 @@ fn round(player: &mut impl for<'u> Player<MatchUnit<'u>>) -> String {
     let explored = Matches::fresh(&mut run, StartStream::Exploration).unwrap();
     Matches::collect(&mut run, &explored);
     let edits = [
-        ("front-side/sharp-angle", Change::Forget),
+        ("front/shot-and-decoy", Change::Forget),
         ("front-side/near-post", Change::BallScope([400, 400])),
         ("center/kick-off", Change::Forget),
     ];
