@@ -93,13 +93,13 @@ impl Coach {
 
     /// Orders all remaining robots to defend or to play cases; a robot that plays a case plays it to its end.
     pub(super) fn play_cases(&mut self, plan: &mut Plan<'_>) {
-        self.go_on_with_cases(plan);
+        Self::go_on_with_cases(plan);
         self.defend(plan, self.open_play.attacked);
         plan.all_robots(Role::Player, Task::Gameplay, OrderReason::OpenPlay);
     }
 
     /// Orders robots that play a case to go on, but for two that defend.
-    pub(super) fn go_on_with_cases(&self, plan: &mut Plan<'_>) {
+    pub(super) fn go_on_with_cases(plan: &mut Plan<'_>) {
         let view = plan.view;
         for robot in view.ours.iter().filter(|robot| view.in_play.has(robot.id)) {
             if plan.free.len() > 2 && plan.take(robot.id) {

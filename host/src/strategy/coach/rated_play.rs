@@ -132,7 +132,7 @@ impl Coach {
             let why = OrderReason::SoonestAtBall { seconds: arrival.seconds };
             plan.order(id, Role::Player, Task::Gameplay, why);
             // Left free, the others would wait for a case that was not worth it, and play it.
-            self.go_on_with_cases(plan);
+            Self::go_on_with_cases(plan);
             self.defend(plan, self.open_play.attacked);
             return self.support_pass(plan, arrival.ball, Some(id));
         }
