@@ -122,7 +122,7 @@ pub(crate) fn assign_within(distances: &Distances, rule: CostRule, limit: f32) -
 /// The packed ids of the minimum sum.
 fn least_sum(distances: &Distances, limit: f32) -> Option<u16> {
     let full = full_set(distances)?;
-    if distances.parts == 2 {
+    if cfg!(feature = "words") && distances.parts == 2 {
         return least_pair(distances, limit);
     }
     // For every set of parts: the minimum sum so far and its ids, the sum above the ids.
