@@ -42,16 +42,27 @@ for (const end of ["pointerup", "pointercancel"]) {
   }, true);
 }
 
+/** The field that is being written in: it stays until its change is taken or it is left, or what is written so far would be lost. */
+let written = null;
+addEventListener("input", (event) => event.target === document.activeElement && (written = event.target), true);
+for (const end of ["change", "blur"]) {
+  // A window that is left takes the focus along, and the field keeps it.
+  addEventListener(end, (event) => event.target === written && (end === "change" || document.activeElement !== written) && (written = null), true);
+}
+
 /** What an element is known by when it is made again. */
 const face = (element) => `${element.tagName} ${JSON.stringify(element.dataset)} ${element.id}`;
 
-/** Replaces what is in `target` where `key` differs from last time; true where it did. Focus stays with what is made again. */
+/** Replaces what is in `target` where `key` differs from last time; true where it did. Focus and caret stay with what is made again. */
 export function fill(target, key, make) {
-  if (target.dataset.key === key || (pressed && target.contains(pressed))) return false;
+  if (target.dataset.key === key || [pressed, written].some((held) => held && target.contains(held))) return false;
   target.dataset.key = key;
-  const focused = target !== document.activeElement && target.contains(document.activeElement) ? face(document.activeElement) : null;
+  const had = target !== document.activeElement && target.contains(document.activeElement) ? document.activeElement : null;
+  const caret = had?.selectionStart == null ? null : [had.selectionStart, had.selectionEnd];
   target.replaceChildren(...[make()].flat().filter((child) => child != null && child !== false));
-  if (focused) [...target.querySelectorAll("button, select, input, [tabindex]")].find((one) => face(one) === focused)?.focus({ preventScroll: true });
+  const again = had && [...target.querySelectorAll("button, select, input, textarea, [tabindex]")].find((one) => face(one) === face(had));
+  again?.focus({ preventScroll: true });
+  if (caret) again?.setSelectionRange?.(...caret);
   return true;
 }
 

@@ -34,10 +34,7 @@ export function showTune() {
 }
 
 function draw() {
-  const tab = byId("tab-tune");
-  // What is being written is not taken away.
-  if (tab.contains(document.activeElement) && document.activeElement.matches("input")) return;
-  fill(tab, `${version} ${store.scene?.robots.length} ${store.state.powers} ${store.state.may_ask} ${store.state.recorded}`, () => [
+  fill(byId("tab-tune"), `${version} ${store.scene?.robots.length} ${store.state.powers} ${store.state.may_ask} ${store.state.recorded}`, () => [
     el("p", { id: "tune-note", class: "muted", role: "status" }, note()),
     el("input", { id: "tune-search", type: "search", placeholder: "Search names and meanings", "aria-label": "Search parameters", value: sought, oninput: (event) => search(event.target.value) }),
     ...teams.flatMap(team),

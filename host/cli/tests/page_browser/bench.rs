@@ -208,9 +208,27 @@ fn saved_as_file(tab: &mut Tab<'_>, team: &str, drafted: &str) {
     assert_eq!(tab.eval("window.file").unwrap(), drafted);
 }
 
+/// Chooses a symmetry by script, with focus and pointer where they are, and waits until panels are drawn.
+fn made_again(tab: &mut Tab<'_>, symmetry: &str) {
+    tab.eval(&format!("document.querySelector('[data-copy={symmetry}]').click()")).unwrap();
+    tab.eval("new Promise((drawn) => setTimeout(() => requestAnimationFrame(drawn), 500))").unwrap();
+}
+
 fn name_and_describe(tab: &mut Tab<'_>) {
     tab.write("#bench-name", "center/from-the-page").unwrap();
     tab.wait("onetwo.workbench.name === 'center/from-the-page'").unwrap();
+    // Another symmetry makes the panel again, before the first letter and among them: caret and letters stay,
+    // and what is half written is no change yet.
+    tab.click("#bench-intent").unwrap();
+    tab.key("Home").unwrap();
+    made_again(tab, "across-x");
+    for letter in "Written on ".chars() {
+        tab.key(letter.encode_utf8(&mut [0; 4])).unwrap();
+    }
+    made_again(tab, "identity");
+    let begun = tab.eval("document.getElementById('bench-intent').value").unwrap();
+    assert!(begun.as_str().is_some_and(|text| text.starts_with("Written on ")), "{begun}");
+    assert_ne!(tab.eval("onetwo.workbench.sheet.intent").unwrap(), begun);
     tab.write("#bench-intent", "Written on the page.").unwrap();
     tab.wait("onetwo.workbench.sheet.intent === 'Written on the page.'").unwrap();
 }
