@@ -331,9 +331,9 @@ fn held_or_free(belief: &Belief) -> Drive {
 fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
     let limits = if drive.mode == DriveMode::Holding {
         let speed = if belief.is_placing() { PLACING_SPEED } else { HOLDING.speed };
-        FreeLimits { speed, acceleration: HOLDING.acceleration * drive.gentle, ..HOLDING }
+        FreeLimits { speed, acceleration: HOLDING.acceleration * drive.acceleration_share, ..HOLDING }
     } else {
-        FreeLimits { acceleration: LIMITS.acceleration * drive.gentle, ..LIMITS }
+        FreeLimits { acceleration: LIMITS.acceleration * drive.acceleration_share, ..LIMITS }
     };
     let limits = capped(limits, belief);
     let stop = if belief.game.phase == Phase::Stop { STOP_SPEED - STOP_SPEED_SLACK } else { f32::INFINITY };

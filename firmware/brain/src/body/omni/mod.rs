@@ -47,7 +47,7 @@ pub struct Drive {
     pub armed: bool,
     /// Share of the acceleration that is planned with, with or without the ball; more than 1 for a step to
     /// the ball.
-    pub gentle: f32,
+    pub acceleration_share: f32,
     /// Instructions that choosing the target took, by the search's estimate: its path has so much less.
     pub effort: u32,
 }
@@ -74,7 +74,7 @@ impl Drive {
             dribbler: 0.0,
             kick: OmniKick::None,
             armed: true,
-            gentle: 1.0,
+            acceleration_share: 1.0,
             effort: 0,
         }
     }

@@ -105,7 +105,7 @@ fn take(belief: &Belief, ball: &BelievedBall) -> Drive {
     let to = me + to_ball.unit().unwrap_or_default() * (gap + GOES_THROUGH);
     let speed =
         TAKES + ball.velocity.norm() + math::sqrt(2.0 * limits_without_ball(belief).braking * gap.max(0.0));
-    Drive { speed, dribbler: 1.0, gentle: TAKES_HARDER, ..Drive::bold(to, face) }
+    Drive { speed, dribbler: 1.0, acceleration_share: TAKES_HARDER, ..Drive::bold(to, face) }
 }
 
 /// With the ball held: turns with it until the kick goes to `at`, then kicks.

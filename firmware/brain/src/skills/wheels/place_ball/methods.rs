@@ -64,9 +64,9 @@ fn around(belief: &Belief, ball: Point<Field>, face: Angle, drive: Drive) -> Dri
 /// Backwards with the ball: straight away from a wall, or to its place, with this share of the acceleration.
 pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, placement: &Placement) -> Drive {
     let me = belief.pose.position;
-    let gentle = placement.grip;
+    let grip = placement.grip;
     // What hardly holds still holds a ball that gets no faster.
-    let speed = if gentle < FOLLOWS { HELD_BALL_PULL_SPEED } else { placement.pace };
+    let speed = if grip < FOLLOWS { HELD_BALL_PULL_SPEED } else { placement.pace };
     let Some(out) = out else {
         // Facing away from the place; at the end the heading stays.
         let far = belief.dribbler_point().distance(at) > KEEPS_HEADING;
@@ -74,9 +74,9 @@ pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, placem
         // Sideways a roller holds less than towards the robot.
         let share = if (face - belief.pose.heading).abs() > TURNING_ANGLE_MIN { SIDEWAYS } else { 1.0 };
         let to = at - Vector::polar(BALL_AT, face);
-        return Drive { speed, gentle: share * gentle, ..Drive::holding(to, face) };
+        return Drive { speed, acceleration_share: share * grip, ..Drive::holding(to, face) };
     };
-    Drive { speed, gentle, ..Drive::holding(me - Vector::polar(CLEAR_OF_WALL, out), out) }
+    Drive { speed, acceleration_share: grip, ..Drive::holding(me - Vector::polar(CLEAR_OF_WALL, out), out) }
 }
 
 /// From behind, with what the dribbler holds.
@@ -89,7 +89,7 @@ pub(super) fn push(belief: &Belief, ball: &BelievedBall, at: Point<Field>, place
     let left = ball.position.distance(at) - PUSH_STOPS_SHORT_M - LAG * belief.velocity.norm();
     let speed = math::sqrt(2.0 * rolls * left.max(0.0)).clamp(CREEP, PUSH);
     let to = ball.position + Vector::polar(PUSH_AIM_AHEAD_M - BALL_AT, face);
-    Drive { speed, gentle: PUSHES, ..Drive::holding(to, face) }.into()
+    Drive { speed, acceleration_share: PUSHES, ..Drive::holding(to, face) }.into()
 }
 
 /// A pushed ball has got beside the robot, or the robot beside its path.
