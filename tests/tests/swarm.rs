@@ -18,6 +18,13 @@ fn a_hundred_random_fault_runs_violate_no_property() {
     assert!(counters.brakings > 10_000 && counters.slowest_ms > 0, "{counters:?}");
 }
 
+/// Seed 17190: its coordinator boots, and loss hides the running cycle from it for as long as it listens.
+#[test]
+fn a_coordinator_that_boots_does_not_decide_a_cycle_again() {
+    let (_, broken) = watch(Runs { first: 17_190, seeds: 1, jobs: 1 }, |_| {});
+    assert!(broken.is_empty(), "{:?}", broken.first());
+}
+
 #[test]
 fn a_seed_gives_the_same_run_on_any_number_of_threads() {
     let play = |jobs| watch(Runs { first: 40, seeds: 6, jobs }, |_| {}).0;

@@ -34,12 +34,20 @@ impl Teammate {
 #[derive(Clone, Debug, Default)]
 pub struct Teammates {
     table: [Option<Teammate>; RobotId::COUNT],
+    /// A bit for each robot that a beacon was ever received from.
+    received: u16,
 }
 
 impl Teammates {
     /// Stores `beacon` as the newest of robot `from`, received at `now`.
     pub fn receive(&mut self, now: Instant, from: RobotId, beacon: &Beacon) {
+        self.received |= 1 << from.index();
         self.table[from.index()] = Some(Teammate { beacon: beacon.clone(), received: now });
+    }
+
+    /// Whether a beacon of that robot was received since this one booted, however long ago.
+    pub fn has_received(&self, id: RobotId) -> bool {
+        self.received & 1 << id.index() != 0
     }
 
     /// The teammate, if it is present: received within the lease and available.

@@ -73,7 +73,7 @@ impl Brain<'_> {
             }
             ReuseRequest::Abort(reason) => {
                 if let Some(state) = self.cycle.aborted(reason) {
-                    self.adopt(now, &state);
+                    self.adopt_own(now, &state);
                 }
                 // This step ends a gameplay, and may begin the next: the robot stands in it.
                 self.since.gameplay_changed = false;

@@ -17,9 +17,14 @@ use protocol::host::{Directive, Hint};
 use rules::Phase;
 
 impl Brain<'_> {
-    /// Adopts a newer state, and sets this robot's own part accordingly.
-    pub(super) fn adopt(&mut self, now: Instant, state: &CycleState) {
-        let changed = self.cycle.adopt(state, self.awake);
+    /// Adopts a newer state that this robot made, and sets its own part accordingly.
+    pub(super) fn adopt_own(&mut self, now: Instant, state: &CycleState) {
+        self.adopt(now, state, self.awake);
+    }
+
+    /// Adopts a newer state; `from_start`: its cycle began in this boot epoch of this robot.
+    pub(super) fn adopt(&mut self, now: Instant, state: &CycleState, from_start: bool) {
+        let changed = self.cycle.adopt(state, from_start);
         if changed == CycleEvent::Known {
             return;
         }
@@ -75,7 +80,7 @@ impl Brain<'_> {
         if self.was_available && !available && self.takes_part() {
             // Teammates must not wait for this robot.
             if let Some(state) = self.cycle.aborted(self.reason_to_leave(now)) {
-                self.adopt(now, &state);
+                self.adopt_own(now, &state);
             }
         }
         self.beacon_due |= self.was_available != available;
@@ -87,14 +92,14 @@ impl Brain<'_> {
             // A robot that takes part aborts; an elector that does not supersedes.
             let next = if self.takes_part() { self.cycle.aborted(reason) } else { self.propose(now) };
             if let Some(state) = next {
-                self.adopt(now, &state);
+                self.adopt_own(now, &state);
             }
         }
         if let Some(state) = self.next_state(now) {
-            self.adopt(now, &state);
+            self.adopt_own(now, &state);
             // A cycle of its own is decided at once.
             if let Some(state) = self.next_state(now) {
-                self.adopt(now, &state);
+                self.adopt_own(now, &state);
             }
         }
     }

@@ -8,9 +8,9 @@ use protocol::{CycleId, RobotId};
 pub struct Cycle {
     me: RobotId,
     state: Option<CycleState>,
-    /// Learned of while still listening after a boot: what an earlier boot epoch of this robot did in it is
+    /// It may have begun before this robot booted: what an earlier boot epoch of this robot did in it is
     /// unknown.
-    learned_asleep: bool,
+    may_be_older: bool,
     /// Own progress in the cycle.
     pub progress: Progress,
     /// Some robot of the case has touched the ball.
@@ -31,7 +31,7 @@ pub enum CycleEvent {
 impl Cycle {
     /// A robot that knows no cycle.
     pub fn new(me: RobotId) -> Self {
-        Self { me, state: None, learned_asleep: false, progress: Progress::Idle, touched: false }
+        Self { me, state: None, may_be_older: false, progress: Progress::Idle, touched: false }
     }
 
     /// The newest cycle state known.
@@ -60,21 +60,21 @@ impl Cycle {
     /// Whether this robot is the coordinator of an open cycle that it has received from its start in this
     /// boot epoch.
     pub fn is_mine_to_decide(&self) -> bool {
-        !self.learned_asleep && self.state.as_ref().is_some_and(|s| s.coordinator == self.me)
+        !self.may_be_older && self.state.as_ref().is_some_and(|s| s.coordinator == self.me)
     }
 
     /// Whether an earlier boot epoch of this robot took part in the running gameplay.
     pub fn is_of_an_earlier_epoch(&self) -> bool {
-        self.learned_asleep
+        self.may_be_older
     }
 
-    /// Adopts `state` if it is newer than the known one.
-    pub fn adopt(&mut self, state: &CycleState, awake: bool) -> CycleEvent {
+    /// Adopts `state` if it is newer than the known one; `from_start`: its cycle began in this boot epoch.
+    pub fn adopt(&mut self, state: &CycleState, from_start: bool) -> CycleEvent {
         if !state.is_newer_than(self.state.as_ref()) {
             return CycleEvent::Known;
         }
         if self.id() != Some(state.id) {
-            self.learned_asleep = !awake;
+            self.may_be_older = !from_start;
         }
         let gameplay = self.play() != state.play();
         self.state = Some(state.clone());
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn a_coordinator_that_learned_of_its_cycle_asleep_does_not_decide_it() {
+    fn a_coordinator_does_not_decide_a_cycle_that_may_be_older_than_its_boot() {
         let mut cycle = Cycle::new(robot(2));
         cycle.adopt(&state(7, Decision::Undecided), false);
         assert!(!cycle.is_mine_to_decide());
