@@ -21,12 +21,14 @@ pub mod received;
 
 use geometry::{Field, GoalEnd, Point, Pose, Vector, math};
 use motion::rolling::RollingBall;
+use motion::trajectory::FreeLimits;
 use protocol::host::{DriveLimits, RuleRole};
 use protocol::robot_io::{OPPONENTS_MAX, OmniKick, SensorFrame};
 use protocol::{Duration, Instant, RobotId};
 use rules::{League, Phase, Side};
 
 use crate::belief::received::Handling;
+use crate::body::omni::LIMITS;
 use crate::body::{self, BodySpec};
 use crate::teammates::Teammates;
 
@@ -147,6 +149,11 @@ impl DriveCap {
         };
         Self { speed: metres(limits.speed), acceleration: metres(limits.acceleration) }
     }
+
+    /// The stricter of `limits` and these.
+    pub(crate) fn applied_to(self, limits: FreeLimits) -> FreeLimits {
+        limits.slowed_to(self.speed).softened_to(self.acceleration)
+    }
 }
 
 /// The robot's world model.
@@ -203,6 +210,11 @@ struct Sight {
 }
 
 impl Belief {
+    /// Limits with which a robot on wheels plans without the ball, within what the host allows it.
+    pub fn limits_without_ball(&self) -> FreeLimits {
+        self.drive_cap.applied_to(LIMITS)
+    }
+
     /// A belief without any observation.
     pub fn new(league: League) -> Self {
         Self {
@@ -229,7 +241,7 @@ impl Belief {
             has_camera: false,
             slow_sights: 0,
             league,
-            spec: body::of(league).spec(),
+            spec: body::spec(league),
         }
     }
 

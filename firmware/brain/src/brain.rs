@@ -14,8 +14,10 @@ use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::{Decision, PRESENCE_LEASE, TeamMessage};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
+use crate::abilities::{self, Abilities};
+use crate::actuation::Actuation;
 use crate::belief::Belief;
-use crate::body::{self, Actuation, Body, Intent};
+use crate::body::Intent;
 use crate::config::{Approach, BrainConfig};
 use crate::directive::TaskState;
 use crate::execution::Execution;
@@ -56,7 +58,7 @@ pub(crate) enum PacketKind {
 /// A robot's brain: sans-IO, all times are arguments.
 pub struct Brain<'a> {
     config: BrainConfig,
-    body: &'static dyn Body,
+    body: &'static dyn Abilities,
     base: CaseBase<'a>,
     belief: Belief,
     teammates: Teammates,
@@ -95,7 +97,7 @@ impl<'a> Brain<'a> {
         timers.set(Timer::Boot, now + PRESENCE_LEASE);
         Self {
             config: config.clone(),
-            body: body::of(config.league),
+            body: abilities::of(config.league),
             base,
             belief: Belief::defending(config.league, config.defending)
                 .following_opponents(config.settings.lookahead_s > 0.0),

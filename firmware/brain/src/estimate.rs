@@ -5,7 +5,7 @@ use casebase::{Action, CaseRobot, Leg};
 use geometry::{Field, Point};
 use protocol::Duration;
 
-use crate::execution::ActionScene;
+use crate::action_scene::ActionScene;
 
 /// Time limit for a task expected to take `expected` seconds.
 pub(crate) fn limit(expected: f32) -> Duration {

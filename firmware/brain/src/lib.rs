@@ -3,7 +3,8 @@
 //!
 //! Four kinds of methods, as on [`Brain`]: getters; `handle_*(now, …)` for inputs; `poll_*` for outputs, to
 //! be drained after every `handle_*`; no commands besides. Bottom up: [`timer`] (every deadline), [`belief`]
-//! and [`teammates`] (what it knows), [`body`] and [`skills`] (what it can do), [`reactive`] (what it does by
+//! and [`teammates`] (what it knows), [`body`], [`skills`]
+//! and [`abilities`] (what it can do), [`actuation`] (how it moves), [`reactive`] (what it does by
 //! itself), [`execution`] (its part of a case), [`team`] (the cycle), [`Brain`] (the order of these within a
 //! step), [`Station`] (brain with radio).
 //!
@@ -17,6 +18,9 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod abilities;
+mod action_scene;
+pub mod actuation;
 pub mod belief;
 pub mod body;
 mod brain;

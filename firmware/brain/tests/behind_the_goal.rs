@@ -1,8 +1,9 @@
 //! A keeper that was off the field, behind its own goal, comes around the goal to its line: with the robot's
 //! own motion planner, followed exactly. Field frame, SI.
 
+use brain::actuation::Drivetrain;
 use brain::belief::{Belief, BelievedBall};
-use brain::body::omni::{Drive, Drivetrain};
+use brain::body::omni::Drive;
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use protocol::Instant;
 use rules::{League, Phase, RuleRole, Side};

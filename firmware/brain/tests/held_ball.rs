@@ -1,8 +1,9 @@
 //! `held_ball`: tests: a robot that has to leave a ball which lies within its own outline, as in simulators
 //! that hold it there. Field frame, SI.
 
+use brain::actuation::Drivetrain;
 use brain::belief::{Belief, BelievedBall};
-use brain::body::omni::{Drive, Drivetrain};
+use brain::body::omni::Drive;
 use geometry::{Angle, GoalEnd, Point, Pose, Vector};
 use protocol::Instant;
 use rules::{League, Phase, RuleRole, Side};

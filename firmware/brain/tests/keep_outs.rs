@@ -1,8 +1,9 @@
 //! `keep_outs`: tests: every robot leaves where the rules forbid it to be, from every place, in every phase.
 //! With the robot's own motion planner, followed exactly; the judge is `rules::keep_out`. Field frame, SI.
 
+use brain::actuation::Drivetrain;
 use brain::belief::{Belief, BelievedBall, Other};
-use brain::body::omni::{Drive, Drivetrain};
+use brain::body::omni::Drive;
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use protocol::{Instant, RobotId};
 use rand_core::{RngCore, SeedableRng};

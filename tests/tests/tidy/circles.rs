@@ -207,9 +207,7 @@ fn a_circle_of_folders_is_found_though_no_file_is_in_one() {
 }
 
 /// Circles that are left, by crate: files in the order of their names. Only to be shortened.
-const KNOWN: [(&str, &[&str]); 7] = [
-    ("brain", &["belief", "body", "skills"]),
-    ("brain", &["estimate", "execution"]),
+const KNOWN: [(&str, &[&str]); 5] = [
     ("host", &["strategy::defence", "strategy::support"]),
     ("study", &["evaluation::comparison", "evaluation::tables"]),
     (
@@ -228,16 +226,7 @@ const KNOWN: [(&str, &[&str]); 7] = [
 ];
 
 /// Circles of folders that are left, likewise.
-const KNOWN_OF_FOLDERS: [(&str, &[&str]); 2] = [
-    ("brain", &["belief", "body", "hosted", "skills"]),
-    (
-        "host",
-        &[
-            "strategy::defence",
-            "strategy::order",
-            "strategy::restart",
-            "strategy::support",
-            "strategy::threat",
-        ],
-    ),
-];
+const KNOWN_OF_FOLDERS: [(&str, &[&str]); 1] = [(
+    "host",
+    &["strategy::defence", "strategy::order", "strategy::restart", "strategy::support", "strategy::threat"],
+)];

@@ -227,7 +227,7 @@ const FACTS: [Fact; 10] = [
             // A share of a world's acceleration.
             ("hil-sim/src/small_size/worlds/model.rs", "kick_gain"),
             // What both of two robots that close are trusted with.
-            ("firmware/brain/src/body/omni/bodies.rs", "BOTH_BRAKE"),
+            ("firmware/brain/src/actuation/bodies.rs", "BOTH_BRAKE"),
             // How gently a carried ball is brought to its place.
             ("firmware/brain/src/skills/wheels/dribble.rs", "BRAKES"),
             // The champions' robots, as their team ships them for simulation.
@@ -298,7 +298,7 @@ const FACTS: [Fact; 10] = [
             // Start and end of a path.
             ("firmware/motion/src/avoid/item.rs", "TOUCH"),
             // A speed of bodies, and an angle beside an opponent.
-            ("firmware/brain/src/body/omni/bodies.rs", "TOUCHES_AT"),
+            ("firmware/brain/src/actuation/bodies.rs", "TOUCHES_AT"),
             ("firmware/brain/src/skills/wheels/get_ball.rs", "ASKEW_TOUCHING"),
             // From where a pushed ball rolls on by itself.
             ("firmware/brain/src/skills/wheels/place_ball.rs", "PUSHED"),

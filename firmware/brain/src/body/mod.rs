@@ -1,22 +1,16 @@
-//! `body`: interface between brain and body, the same for all bodies: intents, a table of numbers, and the
-//! skills of the case language behind one trait ([`Body`]); a module per body turns intents into actuator
-//! orders.
+//! `body`: interface between brain and body, the same for all bodies: intents, and a table of numbers. What a
+//! body can do is in [`abilities`](crate::abilities); [`actuation`](crate::actuation) turns intents into
+//! actuator orders.
 
-mod actuation;
 pub mod kind;
 pub mod legged;
 pub mod omni;
 
-use casebase::CaseKick;
-use geometry::{Angle, Field, GoalEnd, Point};
+use geometry::{Angle, Field, Point};
 use protocol::Duration;
 use protocol::robot_io::{LeggedKick, OmniKick};
-use protocol::team::ShotRule;
 use rules::League;
 
-use crate::belief::Belief;
-use crate::skills::{Reception, Step};
-pub use actuation::Actuation;
 pub use kind::BodyKind;
 
 /// Motion or primitive wanted for the coming step. Points and angles of the field.
@@ -104,61 +98,10 @@ pub struct BodySpec {
     pub doubt_steps: u8,
 }
 
-/// A kind of body: its numbers and its skills in the case language.
-pub trait Body: Sync {
-    /// Properties of this body.
-    fn spec(&self) -> &'static BodySpec;
-
-    /// Moves to the ball and takes it; faces `exit_heading` afterwards unless that loses a race.
-    fn get_ball(&self, belief: &Belief, exit_heading: Option<Angle>) -> Step;
-
-    /// Receives a ball that has been passed to this robot.
-    fn receive(&self, belief: &Belief, exit_heading: Option<Angle>) -> Reception;
-
-    /// Brings the ball held to a place.
-    fn carry_to(&self, belief: &Belief, to: Point<Field>) -> Step;
-
-    /// Passes the ball held to a place.
-    fn pass(&self, belief: &Belief, place: Point<Field>) -> Intent;
-
-    /// Kicks the held ball with the library's kick `kind`, to `end`.
-    fn kick(&self, belief: &Belief, kind: &CaseKick, along: Angle, end: Point<Field>) -> Intent;
-
-    /// Shoots the ball held at the goal, where it is open, or brings it to where that is easier.
-    fn shoot(&self, belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent;
-
-    /// A case's shot at goal along the leg that ends at `leg.1`, with its kick `leg.0`, and the rule that
-    /// chose it, which only legged robots tell; `patient` while there is time left. `None` where there is
-    /// none, and no shot worth making.
-    fn shoot_leg(
-        &self,
-        belief: &Belief,
-        attacked: GoalEnd,
-        leg: (&CaseKick, Point<Field>),
-        patient: bool,
-    ) -> Option<(Intent, ShotRule)> {
-        let _ = leg;
-        Some((self.shoot(belief, attacked, patient), ShotRule::NoShot))
-    }
-
-    /// With the ball held and an opponent about to be at it: the shot that is worth more than to go on with
-    /// the case, which takes `time` s.
-    fn pressed_shot(&self, belief: &Belief, attacked: GoalEnd, time: f32) -> Option<Intent> {
-        let _ = (belief, attacked, time);
-        None
-    }
-
-    /// The heading from which a kick of that kind sends the ball in that direction.
-    fn heading_for(&self, kind: &CaseKick, along: Angle) -> Angle;
-
-    /// Seconds a passed ball takes for a distance, m.
-    fn roll(&self, league: League, distance: f32) -> f32;
-}
-
-/// The body of that league's robots.
-pub fn of(league: League) -> &'static dyn Body {
+/// Properties of that league's robots.
+pub fn spec(league: League) -> &'static BodySpec {
     match BodyKind::of(league) {
-        BodyKind::Legged(_) => &legged::Legged,
-        BodyKind::Wheeled(_) => &omni::Wheeled,
+        BodyKind::Legged(_) => &legged::SPEC,
+        BodyKind::Wheeled(_) => &omni::SPEC,
     }
 }

@@ -6,9 +6,9 @@ use protocol::team::{AbortReason, Closure, Decision, Progress, Status};
 use rules::Phase;
 
 use super::Brain;
+use crate::action_scene::ActionScene;
 use crate::body::Intent;
 use crate::config::Approach;
-use crate::execution::ActionScene;
 use crate::reactive::Freedom;
 use crate::skills::wheels;
 use crate::team::reuse::{self, ReuseRequest};

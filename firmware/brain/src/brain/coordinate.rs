@@ -7,9 +7,10 @@ use protocol::team::{AbortReason, Closure, CycleState, Decision, PRESENCE_LEASE,
 use protocol::{Duration, Instant, RobotId};
 
 use super::{Brain, EFFORT_OF_GAMEPLAY, INPUTS_OF_PLAN_MAX, explained::Explained};
+use crate::action_scene::ActionScene;
 use crate::config::Approach;
 use crate::estimate;
-use crate::execution::{ActionScene, Execution};
+use crate::execution::Execution;
 use crate::team::cycle::CycleEvent;
 use crate::team::{election, hybrid, retrieval};
 use crate::timer::Timer;

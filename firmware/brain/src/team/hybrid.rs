@@ -9,8 +9,8 @@ use geometry::{Field, Point, Segment};
 
 use casebase::{Action, KickAim, LegKind};
 
+use crate::action_scene::ActionScene;
 use crate::estimate;
-use crate::execution::ActionScene;
 
 /// Whether the reactive behaviour is expected to shoot sooner than the gameplay of `scene`.
 pub fn reactive_shoots_sooner(scene: &ActionScene<'_>) -> bool {

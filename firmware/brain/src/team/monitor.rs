@@ -10,7 +10,7 @@ use casebase::{PointMm, RetrievalSettings};
 use geometry::{Field, Segment, Vector, math};
 use protocol::team::AbortReason;
 
-use crate::execution::ActionScene;
+use crate::action_scene::ActionScene;
 
 /// A doubt about the case, and its duration.
 #[derive(Clone, Debug, Default)]

@@ -3,9 +3,10 @@
 use geometry::{Field, Point};
 use protocol::team::{AbortReason, Progress};
 
+use crate::action_scene::ActionScene;
 use crate::body::Intent;
 use crate::config::Positioning;
-use crate::execution::{ActionOutcome, ActionScene, Execution, face_ball};
+use crate::execution::{ActionOutcome, Execution, face_ball};
 use crate::timer::TimerTable;
 
 /// Result of a step of reuse.

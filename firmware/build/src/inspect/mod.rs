@@ -192,7 +192,7 @@ mod tests {
         for (path, name) in [
             ("/rustc/59807616/library/core/src/num/f32.rs", "core"),
             ("/x/.cargo/registry/src/index-1949/embassy-sync-0.8.0/src/signal.rs", "embassy-sync"),
-            ("/y/onetwo/firmware/brain/src/body/omni/drivetrain.rs", "brain"),
+            ("/y/onetwo/firmware/brain/src/actuation/drivetrain.rs", "brain"),
             ("protocol/src/frame.rs", "protocol"),
             ("protocol/geometry/src/math.rs", "geometry"),
             ("firmware/boards/mps2/src/bin/../lockstep/ticks.rs", "board-mps2"),

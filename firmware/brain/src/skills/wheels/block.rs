@@ -12,7 +12,7 @@ use rules::{Phase, Side};
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
-use crate::body::omni::{BALL_AT, Drive, limits_without_ball};
+use crate::body::omni::{BALL_AT, Drive};
 use crate::skills::wheels::get_ball::{INTERCEPTION_EFFORT_MAX, LOOKS_AHEAD};
 
 /// Blocks a ball on `stretch`.
@@ -51,7 +51,7 @@ fn stop(belief: &Belief, ball: &BelievedBall, crossing: Point<Field>) -> (Point<
         reach: BALL_AT,
         until,
     };
-    let limits = limits_without_ball(belief);
+    let limits = belief.limits_without_ball();
     let (verdict, effort) = question.find_within(&limits, InterceptRequest::Safest, INTERCEPTION_EFFORT_MAX);
     let place = match verdict {
         InterceptVerdict::Intercepts(interception_point) if interception_point.slack() > 0.0 => {

@@ -11,7 +11,7 @@ use rules::contact;
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
-use crate::body::omni::{BALL_AT, Drive, limits_without_ball};
+use crate::body::omni::{BALL_AT, Drive};
 use crate::skills::Step;
 use crate::skills::wheels::wall::wall;
 
@@ -102,7 +102,7 @@ pub(super) fn intercept_ball(belief: &Belief, ball: &BelievedBall) -> Drive {
         reach: BALL_AT,
         until,
     };
-    let limits = limits_without_ball(belief);
+    let limits = belief.limits_without_ball();
     let (verdict, effort) = question.find_within(&limits, InterceptRequest::Soonest, INTERCEPTION_EFFORT_MAX);
     let place = match verdict {
         InterceptVerdict::Intercepts(interception_point) => interception_point.place,

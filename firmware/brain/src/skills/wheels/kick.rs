@@ -13,7 +13,7 @@ use rules::{Phase, Side};
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
-use crate::body::omni::{BALL_AT, Drive, SHOT, limits_without_ball};
+use crate::body::omni::{BALL_AT, Drive, SHOT};
 use crate::governor::may_kick;
 use crate::skills::Step;
 use crate::skills::wheels::get_ball::{Approach, approach, get_ball};
@@ -104,7 +104,7 @@ fn take(belief: &Belief, ball: &BelievedBall) -> Drive {
     let gap = to_ball.norm() - BALL_AT;
     let to = me + to_ball.unit().unwrap_or_default() * (gap + GOES_THROUGH);
     let speed =
-        TAKES + ball.velocity.norm() + math::sqrt(2.0 * limits_without_ball(belief).braking * gap.max(0.0));
+        TAKES + ball.velocity.norm() + math::sqrt(2.0 * belief.limits_without_ball().braking * gap.max(0.0));
     Drive { speed, dribbler: 1.0, acceleration_share: TAKES_HARDER, ..Drive::bold(to, face) }
 }
 
@@ -211,7 +211,8 @@ const STILL_SIDEWAYS: f32 = 0.15;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::omni::{Drivetrain, LIMITS};
+    use crate::actuation::Drivetrain;
+    use crate::body::omni::LIMITS;
     use crate::skills::wheels::testing::belief;
     use protocol::Instant;
     use rules::Side;

@@ -1,5 +1,10 @@
-//! `actuation`: actuation: turns an intent into actuator orders; legs directly, wheels through drivetrain,
-//! governor and kinematics.
+//! `actuation`: turns an intent into actuator orders; legs directly, wheels through drivetrain, governor and
+//! kinematics.
+
+mod bodies;
+mod drivetrain;
+pub mod surroundings;
+mod walk;
 
 use geometry::Twist;
 use motion::omni::Omni;
@@ -8,12 +13,12 @@ use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use rules::{League, RobotSpec};
 
 use crate::belief::Belief;
+use crate::body::Intent;
 use crate::body::kind::{self, BodyKind};
-use crate::body::omni::Drivetrain;
-use crate::body::{Intent, legged};
 use crate::governor::{Circumstances, Governor, LimitReason, Reasons, Ruling};
 use crate::hosted::Hosted;
 use crate::teammates::Teammates;
+pub use drivetrain::Drivetrain;
 
 /// Actuation of one body, with its state.
 #[allow(clippy::large_enum_variant, reason = "one value a robot, and no heap to box it on")]
@@ -125,7 +130,7 @@ impl Actuation {
         intent: Intent,
     ) -> ActuatorFrame {
         let wheels = match self {
-            Self::Legs(_) => return legged::actuate(now, belief, teammates, intent),
+            Self::Legs(_) => return walk::actuate(now, belief, teammates, intent),
             Self::Wheels(_, wheels) => wheels,
         };
         let wanted = wheels.drivetrain.actuate(now, belief, intent);

@@ -1,27 +1,14 @@
-//! `omni`: abilities of the wheeled robot, and how it carries out the case language's actions. SI.
+//! `omni`: numbers of the wheeled robot, and a target for it to drive to. SI.
 //!
-//! [`Drivetrain`] turns intents into a body's motion, [`surroundings`] lists what it keeps out of, the skills
-//! are in [`skills::wheels`](crate::skills::wheels).
+//! [`Drivetrain`](crate::actuation::Drivetrain) turns it into a body's motion.
 
-mod bodies;
-mod drivetrain;
-pub mod surroundings;
-
-use casebase::{CaseKick, KickAim};
-use geometry::{Angle, Field, GoalEnd, Point};
-use motion::ball::BallModel;
-use motion::trajectory::Motion;
+use geometry::{Angle, Field, Point};
+use motion::trajectory::FreeLimits;
 use protocol::Duration;
-use protocol::quantized::from_mm;
 use protocol::robot_io::OmniKick;
-use rules::{League, RobotSpec, contact};
+use rules::{RobotSpec, contact};
 
-use crate::belief::Belief;
-use crate::body::{Body, BodySpec, Intent};
-use crate::skills::wheels as skills;
-use crate::skills::{Reception, Step};
-
-pub use drivetrain::{Drivetrain, LIMITS, limits_without_ball};
+use super::{BodySpec, Intent};
 
 /// From the robot's centre to its flat front, m.
 pub const FRONT: f32 = RobotSpec::OURS.hull.front;
@@ -90,7 +77,7 @@ impl Drive {
     }
 
     /// Deceleration of a robot that touches something otherwise, m/s²: what wheels hold, without the ball.
-    fn hardest_braking(&self) -> f32 {
+    pub(crate) fn hardest_braking(&self) -> f32 {
         match self.mode {
             DriveMode::Holding => RobotSpec::OURS.plan_holding.braking,
             DriveMode::Avoiding | DriveMode::Bold => RobotSpec::OURS.governor.brake,
@@ -104,64 +91,12 @@ impl From<Drive> for Intent {
     }
 }
 
-/// Robots on omnidirectional wheels.
-#[derive(Clone, Copy, Debug)]
-pub struct Wheeled;
-
-impl Body for Wheeled {
-    fn spec(&self) -> &'static BodySpec {
-        &SPEC
-    }
-
-    fn get_ball(&self, belief: &Belief, exit_heading: Option<Angle>) -> Step {
-        skills::get_ball(belief, exit_heading)
-    }
-
-    fn receive(&self, belief: &Belief, exit_heading: Option<Angle>) -> Reception {
-        skills::take_pass(belief, exit_heading)
-    }
-
-    fn carry_to(&self, belief: &Belief, to: Point<Field>) -> Step {
-        skills::carry_to(belief, to, SPEC.arrived_within)
-    }
-
-    fn pass(&self, belief: &Belief, place: Point<Field>) -> Intent {
-        let speed = skills::pass_speed(belief.dribbler_point().distance(place));
-        skills::kick_held(belief, place, OmniKick::Flat(speed))
-    }
-
-    fn kick(&self, belief: &Belief, kind: &CaseKick, _along: Angle, end: Point<Field>) -> Intent {
-        let speed = match kind.aim {
-            KickAim::Heading { length_mm, .. } => {
-                BallModel::default().kick_speed(from_mm(length_mm), ROLLS_ON).min(SHOT)
-            }
-            KickAim::Goal { .. } => SHOT,
-        };
-        skills::kick_held(belief, end, OmniKick::Flat(speed))
-    }
-
-    fn shoot(&self, belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent {
-        skills::shoot(belief, attacked, patient)
-    }
-
-    fn heading_for(&self, _kind: &CaseKick, along: Angle) -> Angle {
-        along
-    }
-
-    fn roll(&self, _league: League, distance: f32) -> f32 {
-        let speed = skills::pass_speed(distance);
-        let path =
-            BallModel::default().kicked(Point::<Field>::new(0.0, 0.0), geometry::Vector::new(speed, 0.0));
-        path.time_to(distance).unwrap_or_else(|| path.duration())
-    }
-}
-
 /// The fastest kick wanted, m/s; the governor has the last word.
 pub const SHOT: f32 = RobotSpec::OURS.kicker.fastest;
-/// How fast a ball kicked into free space still is where the case wants it, m/s: nearly lying.
-const ROLLS_ON: f32 = 0.3;
-
-const SPEC: BodySpec = BodySpec {
+/// Planning limits without the ball.
+pub const LIMITS: FreeLimits = FreeLimits::of(&RobotSpec::OURS.plan);
+/// What planning takes of robots on omnidirectional wheels.
+pub(crate) const SPEC: BodySpec = BodySpec {
     // Two metres from standstill to standstill take 1.5 s with 3.5 m/s².
     speed: 1.3,
     carry_speed: 0.7,

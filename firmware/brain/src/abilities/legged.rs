@@ -1,29 +1,25 @@
-//! `legged`: abilities of the walking robot. SI.
-
-mod walk;
+//! `legged`: how the walking robot carries out the case language's actions. SI.
 
 use casebase::{CaseKick, KickAim, Primitive};
 use geometry::{Angle, Field, GoalEnd, Point};
-use motion::legged::{CARRY_SPEED, WALK_FORWARD};
 use motion::rolling::RollingBall;
-use protocol::Duration;
 use protocol::quantized::from_mm;
 use protocol::robot_io::LeggedKick;
 use protocol::team::ShotRule;
 use rules::League;
 
+use super::Abilities;
 use crate::belief::Belief;
-use crate::body::{Body, BodySpec, Intent};
+use crate::body::legged::{SPEC, nominal};
+use crate::body::{BodySpec, Intent};
 use crate::skills::legged as skills;
 use crate::skills::{Reception, Step};
-
-pub use walk::{actuate, nominal};
 
 /// Robots on four legs.
 #[derive(Clone, Copy, Debug)]
 pub struct Legged;
 
-impl Body for Legged {
+impl Abilities for Legged {
     fn spec(&self) -> &'static BodySpec {
         &SPEC
     }
@@ -89,28 +85,3 @@ fn legged_kick(kind: &CaseKick) -> LeggedKick {
         (Primitive::Pass | Primitive::Unspecified, KickAim::Goal { .. }) => LeggedKick::ForwardHard,
     }
 }
-
-const SPEC: BodySpec = BodySpec {
-    speed: WALK_FORWARD,
-    carry_speed: CARRY_SPEED,
-    // A quarter turn at 1 rad/s.
-    turn: 1.5,
-    // Grabs of 0.5 s each, of which three in four succeed.
-    grab: 1.5,
-    kick: 0.5,
-    // Half the adaptation limit of 1.5 m at walking speed.
-    longest_fetch: 2.5,
-    arrived_within: 0.15,
-    // A step away from touching it.
-    next_to_ball: 0.35,
-    // The robot turns first, and the ball arrives fast.
-    receiver_haste: 0.6,
-    receiver_near: 0.3,
-    // The league's 3 s of holding a ball.
-    shot_patience: Duration::millis(3000),
-    // Radii of body (0.12) and ball (0.0425) and a centimetre.
-    opponent_holds_within: 0.1725,
-    // An arm's length more than touching.
-    disputed_within: 0.25,
-    doubt_steps: 5,
-};

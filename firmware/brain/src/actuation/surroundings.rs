@@ -10,8 +10,8 @@ use rules::keep_out::{Forbidden, KeepOut, KeepOutReason, Situation, keep_out};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::{FieldSpec, Phase, RuleRole, Side};
 
-use super::DriveMode;
 use crate::belief::Belief;
+use crate::body::omni::DriveMode;
 
 /// Obstacles around the robot, and the region it must stay in.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@
 
 use geometry::{Angle, Body, Field, Point, Pose, Segment, Twist, Vector, math};
 use motion::legged::{CARRY_SPEED, CARRY_TURN_RATE, TURN_RATE, WALK_FORWARD, WALK_SIDEWAYS};
-use protocol::robot_io::{ActuatorFrame, LeggedKick, LeggedPrimitive};
+use protocol::robot_io::{ActuatorFrame, LeggedPrimitive};
 
 use crate::belief::Belief;
 use crate::body::Intent;
@@ -14,7 +14,7 @@ use crate::teammates::Teammates;
 use protocol::Instant;
 
 /// The frame that makes the body do `intent`.
-pub fn actuate(now: Instant, belief: &Belief, teammates: &Teammates, intent: Intent) -> ActuatorFrame {
+pub(super) fn actuate(now: Instant, belief: &Belief, teammates: &Teammates, intent: Intent) -> ActuatorFrame {
     let pose = belief.pose;
     match intent {
         Intent::Stand { face: None } => walk(Twist::default()),
@@ -41,20 +41,6 @@ pub fn actuate(now: Instant, belief: &Belief, teammates: &Teammates, intent: Int
         Intent::Kick(kick) => primitive(LeggedPrimitive::Kick(kick)),
         // Legs have no wheels.
         Intent::Drive(_) | Intent::KeepPath => walk(Twist::default()),
-    }
-}
-
-/// Nominal result of a kick: direction from straight ahead, distance to its stop position in m.
-///
-/// Straight kicks: UT Austin's 50 measured ERS-7 power kicks stop 2.15 m ahead on average; the soft one and
-/// the head kicks are the simulator's nominal values.
-pub fn nominal(kick: LeggedKick) -> (Angle, f32) {
-    match kick {
-        LeggedKick::ForwardSoft => (Angle::ZERO, 0.8),
-        LeggedKick::ForwardHard => (Angle::ZERO, 2.15),
-        LeggedKick::Left => (Angle::degrees(75.0), 1.2),
-        LeggedKick::Right => (Angle::degrees(-75.0), 1.2),
-        LeggedKick::Pass(distance) => (Angle::ZERO, distance),
     }
 }
 

@@ -14,9 +14,9 @@ use rules::{Phase, RobotSpec, RuleRole, Side};
 
 use super::bodies::short_of_bodies;
 use super::surroundings::Surroundings;
-use super::{Drive, DriveMode};
 use crate::belief::Belief;
 use crate::body::Intent;
+use crate::body::omni::{Drive, DriveMode, LIMITS};
 use crate::governor::{STOP_SPEED, Wanted};
 
 /// Wheels that follow a plan.
@@ -335,23 +335,11 @@ fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
     } else {
         FreeLimits { acceleration: LIMITS.acceleration * drive.acceleration_share, ..LIMITS }
     };
-    let limits = capped(limits, belief);
+    let limits = belief.drive_cap.applied_to(limits);
     let stop = if belief.game.phase == Phase::Stop { STOP_SPEED - STOP_SPEED_SLACK } else { f32::INFINITY };
     limits.slowed_to(drive.speed.min(stop))
 }
 
-/// `limits`, within what the host allows this robot.
-fn capped(limits: FreeLimits, belief: &Belief) -> FreeLimits {
-    limits.slowed_to(belief.drive_cap.speed).softened_to(belief.drive_cap.acceleration)
-}
-
-/// The limits with which the robot plans without the ball, within what the host allows it.
-pub fn limits_without_ball(belief: &Belief) -> FreeLimits {
-    capped(LIMITS, belief)
-}
-
-/// Planning limits without the ball.
-pub const LIMITS: FreeLimits = FreeLimits::of(&RobotSpec::OURS.plan);
 /// Planning limits with the ball on the dribbler.
 const HOLDING: FreeLimits = FreeLimits::of(&RobotSpec::OURS.plan_holding);
 /// Speed limit of a ball that is pushed to its place, m/s.
