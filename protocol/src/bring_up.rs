@@ -9,9 +9,10 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::frame::{Frame, Key, OVERHEAD, Refusal, Sender, TeamKeys, decode, packet};
+use crate::frame::{Frame, Key, OVERHEAD, Refusal, Sender, TeamKeys, open_report, packet};
 use crate::link::Packet;
 use crate::parts::wheel_name;
+use crate::team::TEAM_MESSAGE_LEN_MAX;
 use crate::{RobotId, TeamId};
 
 /// A check of the list; as text what is checked, and what a person has to see or do.
@@ -208,20 +209,17 @@ pub struct Reporter {
 impl Reporter {
     /// The packet that carries `report`; `counter` must rise with each.
     pub fn seal(&self, counter: u32, report: &BringUpReport) -> Packet {
-        let mut payload = [KIND; REPORT_LEN_MAX];
+        self.seal_as(counter, KIND, report)
+    }
+
+    /// The same of another report, whose payload begins with `kind`.
+    pub fn seal_as(&self, counter: u32, kind: u8, report: &impl Serialize) -> Packet {
+        let mut payload = [0; TEAM_MESSAGE_LEN_MAX];
         // A report always fits (tested with the longest there is); if it did not, silence is the safe answer.
-        let written = payload.split_first_mut().map(|(_, rest)| postcard::to_slice(report, rest));
-        let Some(Ok(written)) = written else { return Packet::new() };
-        let len = 1 + written.len();
-        let Some(payload) = payload.get(..len) else { return Packet::new() };
+        let Ok(payload) = postcard::to_slice(&(kind, report), &mut payload) else { return Packet::new() };
         let (team, sender, epoch) = (self.team, Sender::Robot(self.robot), self.epoch);
         packet(&Frame { team, sender, audience: None, epoch, counter, payload }, &self.key)
     }
-}
-
-/// Returns whether this frame claims to carry a report; nothing is checked.
-pub fn is_report(frame: &Frame<'_>) -> bool {
-    frame.payload.first() == Some(&KIND) && frame.sender.robot().is_some()
 }
 
 /// Reads a genuine report. Order and repetition are the reader's to judge
@@ -231,14 +229,8 @@ pub fn open<'a>(
     team: TeamId,
     keys: &TeamKeys,
 ) -> Result<(Frame<'a>, RobotId, BringUpReport), Refusal> {
-    let frame = Frame::parse(packet, team)?;
-    let Sender::Robot(robot) = frame.sender else { return Err(Refusal::Sender(frame.sender.number())) };
-    if !frame.is_genuine(packet, keys.of(robot), robot) {
-        return Err(Refusal::Tag);
-    }
-    let report: Option<BringUpReport> = frame.payload.strip_prefix(&[KIND]).and_then(decode);
-    let report = report.filter(|report| report.check.number().is_some()).ok_or(Refusal::Payload)?;
-    Ok((frame, robot, report))
+    let (frame, robot, report) = open_report::<BringUpReport>(packet, (team, keys), KIND)?;
+    report.check.number().map(|_| (frame, robot, report)).ok_or(Refusal::Payload)
 }
 
 const _: () = assert!(OVERHEAD + REPORT_LEN_MAX <= 40, "as short as a command");

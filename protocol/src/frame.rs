@@ -395,5 +395,22 @@ pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(payload: &'a [u8]) -> Option
     rest.is_empty().then_some(message)
 }
 
+/// Reads a genuine report of a robot to its host whose payload begins with `kind`. Order and repetition are
+/// the reader's to judge ([`Sessions`]).
+pub fn open_report<'a, T: serde::Deserialize<'a>>(
+    packet: &'a [u8],
+    (team, keys): (TeamId, &TeamKeys),
+    kind: u8,
+) -> Result<(Frame<'a>, RobotId, T), Refusal> {
+    let frame = Frame::parse(packet, team)?;
+    let Sender::Robot(robot) = frame.sender else { return Err(Refusal::Sender(frame.sender.number())) };
+    if !frame.is_genuine(packet, keys.of(robot), robot) {
+        return Err(Refusal::Tag);
+    }
+    let (_, report) =
+        decode::<(u8, T)>(frame.payload).filter(|read| read.0 == kind).ok_or(Refusal::Payload)?;
+    Ok((frame, robot, report))
+}
+
 #[cfg(test)]
 mod tests;

@@ -16,6 +16,7 @@ use crate::host::{HostMessage, Telemetry, Welcome};
 use crate::host_clock::TICK_BITS;
 use crate::link::{Packet, count};
 use crate::parts::PartsReport;
+use crate::pulses::{self, PulseOrder};
 use crate::team::TeamMessage;
 use crate::version::VersionReport;
 use crate::{Instant, RobotId, TeamId};
@@ -94,6 +95,17 @@ impl HostLink {
             HostMessage::Welcome(welcome) => Some(welcome.to),
             HostMessage::Limits(limits) => Some(limits.to),
         };
+        self.seal_payload(now, to, payload)
+    }
+
+    /// The packet that carries an order to the bring-up image of that robot.
+    pub fn seal_order(&mut self, now: Instant, to: RobotId, order: &PulseOrder) -> Packet {
+        let mut payload = [0; PAYLOAD_LEN_MAX];
+        let written = postcard::to_slice(&(pulses::KIND, order), &mut payload);
+        written.map_or(Packet::new(), |payload| self.seal_payload(now, Some(to), payload))
+    }
+
+    fn seal_payload(&mut self, now: Instant, to: Option<RobotId>, payload: &[u8]) -> Packet {
         self.count_up(now);
         let audience = if to.is_none() { Some(self.audience) } else { None };
         let (team, epoch, counter) = (self.team, self.epoch, self.counter);

@@ -4,12 +4,14 @@
 use geometry::{GoalEnd, Vector};
 use protocol::bring_up::{self, BringUpReport, Check, CheckState, Finding, Reporter};
 use protocol::decision::{DecisionReport, Grounds};
-use protocol::frame::{Audience, Frame, Key, Sender, TeamKey};
+use protocol::frame::{Audience, Frame, Key, Sender, TeamKey, open_report};
 use protocol::host::{
     Condition, Directive, DriveLimits, Hint, HostCommand, HostMessage, KickOrder, RuleRole, Telemetry,
     Welcome, WireBall, WireRobot, WireWho, WorldPart,
 };
+use protocol::host_link::HostLink;
 use protocol::parts::{Part, PartState, PartsReport};
+use protocol::pulses::{self, Fired, Pulse, PulseOrder, PulseReport};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::serial::{Lines, line};
 use protocol::station::{self, PacketCounts, RadioPlan, StationMessage, StationReport};
@@ -18,7 +20,7 @@ use protocol::team::{
     Play, Progress, Role, Status, TeamMessage,
 };
 use protocol::version::VersionReport;
-use protocol::{CaseId, CycleId, Duration, RobotId, TeamId};
+use protocol::{CaseId, CycleId, Duration, Instant, RobotId, TeamId};
 use rules::{Phase, Side};
 
 const SPEC: &str = include_str!("../SPEC.md");
@@ -226,6 +228,26 @@ fn a_report_of_a_first_start_has_the_bytes_of_the_specification() {
 }
 
 #[test]
+fn orders_of_pulses_and_their_reports_have_the_bytes_of_the_specification() {
+    let (key, keys) = (team_key().of_robot(robot(3)).host, team_key().of_team());
+    let who = Reporter { team: TeamId(1), robot: robot(3), key, epoch: 9 };
+    let pulse = Pulse { number: 7, chip: false, micros: 1_500 };
+    let order = PulseOrder { boot_epoch: 9, clock: 5_000, fire: Some(pulse) };
+    let packet = HostLink::new(TeamId(1), team_key(), 5).seal_order(Instant(0), robot(3), &order);
+    let payload = Frame::parse(&packet, TeamId(1)).unwrap().payload;
+    assert_eq!(payload, &worked("pulse-order")[..], "{}", hex(payload));
+    assert_eq!(pulses::open_order(&packet, &who), Some(((5, 1), order)));
+    assert!(postcard::from_bytes::<HostMessage>(payload).is_err(), "no message of a host");
+    let last = Some((pulse, Ok(Fired { before: 201.5, after: 160.5, ball: true })));
+    let (host, clock, volts) = (0x6500_0000, 5_020, 160.5);
+    let report = PulseReport { host, clock, ready: false, ball: false, volts, last };
+    let packet = who.seal_as(1, pulses::KIND, &report);
+    let (frame, _, read) = open_report(&packet, (TeamId(1), &keys), pulses::KIND).unwrap();
+    assert_eq!((read, frame.payload), (report, &worked("pulse-report")[..]), "{}", hex(frame.payload));
+    assert!(postcard::from_bytes::<TeamMessage>(frame.payload).is_err(), "no message to a team");
+}
+
+#[test]
 fn a_report_of_what_a_robot_runs_has_the_bytes_of_the_specification() {
     let report = VersionReport { version: [0, 2, 1], image: 0x0102_0304, robot: 5, case_base: u32::MAX };
     assert_eq!(report.payload(), worked("version")[..], "{}", hex(&report.payload()));
@@ -332,8 +354,9 @@ fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
 #[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Nine of robots, two of a base station, two worlds, a welcome, limits, two keys, three frames, a line.
-    assert_eq!(examples, 9 + 2 + worlds().len() + 2 + 2 + 4 + commands().len());
+    // Ten of robots, two of a base station, two worlds, a pulse, a welcome, limits, two keys, three frames, a
+    // line.
+    assert_eq!(examples, 10 + 2 + worlds().len() + 3 + 2 + 4 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {

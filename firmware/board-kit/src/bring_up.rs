@@ -1,15 +1,17 @@
 //! `bring_up`: plays the checks of a robot's first start ([`runtime::bring_up`]) on a board, logs what each
-//! found and what to look at, and reports it to the host by radio (`onetwo robot bring-up`).
+//! found and what to look at, and reports it to the host by radio (`onetwo robot bring-up`), which may
+//! measure the kicker.
 
 use core::cell::{Cell, RefCell};
 
 use defmt::Display2Format;
-use embassy_futures::join::join;
+use embassy_futures::join::join3;
 use embassy_futures::select::select3;
 use embassy_time::{Duration, Ticker};
 use protocol::bring_up::Reporter;
 use runtime::bring_up::{BringUp, Listener, REPORT_EVERY, Reading, Results};
-use runtime::ports::{Probes as _, RadioReceiver, RadioSender, WheelsPort};
+use runtime::kicker::KickerAct;
+use runtime::ports::{Kicker, Probes as _, RadioReceiver, RadioSender, Watchdog, WheelsPort};
 use runtime::tasks::now;
 use runtime::wheel::{CONTROL_PERIOD, Motors};
 
@@ -19,10 +21,12 @@ use crate::robot::Identity;
 use crate::sampling::{self, AnalogInputs, Probes};
 
 /// Plays all checks, then leaves the motors without current. The robot on a stand, wheels off the ground, the
-/// kicker's board unplugged: nothing here charges. A robot that has its page reports the results to its host
-/// for as long as it runs; without it they are on the log alone, and this ends.
+/// kicker's board unplugged: nothing here charges unless the host arms the kicker, and then no wheel is
+/// driven any more. A robot that has its page reports to its host; without it all is on the log alone. Never
+/// returns.
 pub async fn run(
     wheels: impl WheelsPort,
+    (kicker, watchdog): (impl Kicker, impl Watchdog),
     (sender, receiver): (impl RadioSender, impl RadioReceiver),
     gyroscope: impl Gyroscope,
     analog: impl AnalogInputs,
@@ -41,32 +45,54 @@ pub async fn run(
             report(sender, results, &listener).await;
         }
     };
-    let plays = join(checks(wheels, &listener, results.as_ref()), reports);
-    select3(plays, receive(receiver, &listener), sampling::run(gyroscope, analog)).await;
+    let results = results.as_ref();
+    let plays = join3(checks(wheels, &listener, results), reports, kicks(kicker, watchdog, results));
+    select3(plays, receive(receiver, &listener, results), sampling::run(gyroscope, analog)).await;
 }
 
-/// Reports the state of the checks to the host, for ever.
+/// Reports the state of checks and kicker to the host, for ever.
 async fn report(mut sender: impl RadioSender, results: &RefCell<Results>, listener: &Cell<Listener>) {
     let mut ticker = Ticker::every(Duration::from_micros(REPORT_EVERY.0));
     loop {
         ticker.next().await;
         // Both borrows end before anything waits.
-        let packet = results.try_borrow_mut().ok().and_then(|mut results| {
-            let team = results.team();
-            results.packet(listener.get().host_epoch(team))
+        let packets = results.try_borrow_mut().ok().map(|mut results| {
+            let host = listener.get().host_epoch(results.team());
+            [results.packet(host), Some(results.kick_packet(now(), host))]
         });
-        if let Some(packet) = packet {
+        for packet in packets.into_iter().flatten().flatten() {
             sender.send(packet).await;
         }
     }
 }
 
-async fn receive(mut receiver: impl RadioReceiver, listener: &Cell<Listener>) -> ! {
+/// The kicker, which runs empty until the host arms it.
+async fn kicks(
+    mut kicker: impl Kicker,
+    mut watchdog: impl Watchdog,
+    results: Option<&RefCell<Results>>,
+) -> ! {
+    loop {
+        watchdog.feed();
+        let (state, results) = (kicker.state(), results.and_then(|results| results.try_borrow_mut().ok()));
+        let act = results.map_or(KickerAct::Bleed, |mut results| results.kicks.step(now(), state));
+        kicker.act(act).await;
+    }
+}
+
+async fn receive(
+    mut receiver: impl RadioReceiver,
+    listener: &Cell<Listener>,
+    results: Option<&RefCell<Results>>,
+) -> ! {
     loop {
         let packet = receiver.receive().await;
         let mut counted = listener.get();
         counted.receive(&packet);
         listener.set(counted);
+        if let Some(mut results) = results.and_then(|results| results.try_borrow_mut().ok()) {
+            results.kicks.receive(now(), &packet);
+        }
     }
 }
 
@@ -83,6 +109,11 @@ async fn checks(mut wheels: impl WheelsPort, listener: &Cell<Listener>, results:
         }
         if let Some(mut results) = results.and_then(|results| results.try_borrow_mut().ok()) {
             results.take(&step);
+            if results.kicks.is_armed(now()) {
+                wheels.release();
+                defmt::warn!("the kicker is measured: no check goes on until the next start");
+                return;
+            }
         }
         if step.check != shown {
             shown = step.check;

@@ -129,6 +129,12 @@ fn pulse(speed: f32, table: &[(f32, u64)]) -> Option<Duration> {
     Some(Duration(last.1))
 }
 
+/// The longest pulse of a coil in the robot's description, µs.
+pub(crate) fn pulse_max(chip: bool) -> u16 {
+    let table = if chip { CHIP_PULSE } else { FLAT_PULSE };
+    table.last().map_or(0, |(_, micros)| *micros as u16)
+}
+
 const SPEC: KickerSpec = RobotSpec::OURS.kicker;
 /// Ball speed, m/s, and the pulse for it, µs.
 const FLAT_PULSE: &[(f32, u64)] = SPEC.flat_pulses;
@@ -147,7 +153,7 @@ const RISE_MIN: f32 = 0.015 * FULL_VOLTS;
 /// Greatest fall in that time without a kick, V (estimate: a capacitor leaks less in a minute).
 const FALL_MAX: f32 = 0.1 * FULL_VOLTS;
 /// Least time between two kicks.
-const KICK_PAUSE: Duration = Duration::millis(SPEC.pause_ms);
+pub(crate) const KICK_PAUSE: Duration = Duration::millis(SPEC.pause_ms);
 
 #[cfg(test)]
 mod tests {

@@ -269,7 +269,10 @@ macro_rules! bring_up_main {
                 return;
             };
             let (gyroscope, analog) = (drivers::imu(parts.imu), drivers::analog(parts.analog));
-            board_kit::bring_up::run(wheels, radio, gyroscope, analog, who).await;
+            // The last step that may take long is over.
+            let watchdog = drivers::BoardWatchdog::start(parts.keeper.watchdog);
+            let kicking = (drivers::kicker(parts.kicker), watchdog);
+            board_kit::bring_up::run(wheels, kicking, radio, gyroscope, analog, who).await;
         }
     };
 }

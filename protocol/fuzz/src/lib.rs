@@ -6,12 +6,13 @@
 
 use std::fmt::Debug;
 
-use protocol::bring_up::{self, CheckState};
-use protocol::frame::{FRAME_LEN_MAX, Frame, SHORT_TAG_LEN, Sender, TAG_LEN, TeamKey};
+use protocol::bring_up::{self, CheckState, Reporter};
+use protocol::frame::{FRAME_LEN_MAX, Frame, SHORT_TAG_LEN, Sender, TAG_LEN, TeamKey, open_report};
 use protocol::host::HostMessage;
 use protocol::host_link::HostLink;
 use protocol::link::{Link, Received, overhear, overhear_host};
 use protocol::lockstep::{FromRobot, ToRobot};
+use protocol::pulses::{self, PulseReport};
 use protocol::serial::{Lines, line as stuffed};
 use protocol::station::{self, StationMessage};
 use protocol::team::TeamMessage;
@@ -72,7 +73,7 @@ pub fn line(bytes: &[u8]) {
     }
 }
 
-/// Target: a robot's message, or its report of a first start, as it is and in a genuine frame.
+/// Target: a robot's message, or a report of a bring-up image, as it is and in a genuine frame.
 pub fn team(bytes: &[u8]) {
     same_again::<TeamMessage>(bytes);
     let (team, keys, sender) = (TeamId(1), TeamKey::ZERO.of_team(), Sender::Robot(RobotId::ZERO));
@@ -84,12 +85,23 @@ pub fn team(bytes: &[u8]) {
             assert!(!format!("{}: {finding}", report.check).is_empty());
         }
     }
+    if let Some(packet) = &genuine
+        && let Ok((_, _, report)) = open_report::<PulseReport>(packet, (team, &keys), pulses::KIND)
+    {
+        assert!(bytes.first() == Some(&pulses::KIND) && !format!("{report:?}").is_empty());
+    }
 }
 
-/// Target: the host's message.
+/// Target: the host's message, or its order of a pulse in a genuine frame.
 pub fn host(bytes: &[u8]) {
     if let Some(message) = same_again::<HostMessage>(bytes) {
         let _sound = message.is_sound();
+    }
+    let (team, robot, key) = (TeamId(1), RobotId::ZERO, TeamKey::ZERO.of_robot(RobotId::ZERO).host);
+    let frame = Frame { team, sender: Sender::Host, audience: None, epoch: 1, counter: 1, payload: bytes };
+    let who = Reporter { team, robot, key, epoch: 1 };
+    if frame.emit(&key).is_some_and(|packet| pulses::open_order(&packet, &who).is_some()) {
+        assert_eq!(bytes.first(), Some(&pulses::KIND));
     }
 }
 

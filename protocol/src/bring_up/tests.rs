@@ -65,7 +65,6 @@ fn every_check_in_every_state_is_read_as_it_was_sent_and_the_longest_fits() {
             let packet = reporter().seal(5, &report(check, state));
             let (frame, who, read) = open(&packet, TEAM, &keys).unwrap();
             assert_eq!((frame.epoch, frame.counter, who, read), (7, 5, robot(), report(check, state)));
-            assert!(is_report(&frame));
             longest = longest.max(frame.payload.len());
         }
     }

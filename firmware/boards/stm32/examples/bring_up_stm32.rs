@@ -7,6 +7,7 @@
 //!
 //! A robot that has its page (`onetwo firmware flash --page`) reports the same by radio, until it is switched
 //! off: `onetwo robot bring-up --team N --robots serial:DEVICE --key-file team.key` is its host and shows it.
+//! With the kicker's board plugged in `onetwo robot bring-up --kick` charges and fires it (docs/boards.md).
 #![allow(unsafe_code, reason = "registers, interrupts and flash are reached by address")]
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

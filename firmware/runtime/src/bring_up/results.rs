@@ -3,9 +3,9 @@
 
 use protocol::bring_up::{BringUpReport, CHECKS, CheckState, Reporter};
 use protocol::link::Packet;
-use protocol::{Duration, TeamId};
+use protocol::{Duration, Instant, TeamId, pulses};
 
-use super::BenchStep;
+use super::{BenchStep, Kicks};
 
 /// Period of the packets: each check is reported at least four times a second, in 2 kB/s.
 pub const REPORT_EVERY: Duration = Duration::millis(20);
@@ -18,12 +18,14 @@ pub struct Results {
     states: [Option<CheckState>; CHECKS.len()],
     /// The check whose turn it is.
     next: usize,
+    /// Interlock of its kicker.
+    pub kicks: Kicks,
 }
 
 impl Results {
     /// Results of which none is known yet.
     pub const fn new(reporter: Reporter) -> Self {
-        Self { reporter, counter: 0, states: [None; CHECKS.len()], next: 0 }
+        Self { reporter, counter: 0, states: [None; CHECKS.len()], next: 0, kicks: Kicks::new(reporter) }
     }
 
     /// Team of the robot.
@@ -49,6 +51,12 @@ impl Results {
         self.next = (number + 1) % CHECKS.len();
         self.counter = self.counter.saturating_add(1);
         Some(self.reporter.seal(self.counter, &BringUpReport { host, check, state }))
+    }
+
+    /// The packet that reports the state of the kicker.
+    pub fn kick_packet(&mut self, now: Instant, host: u32) -> Packet {
+        self.counter = self.counter.saturating_add(1);
+        self.reporter.seal_as(self.counter, pulses::KIND, &self.kicks.report(now, host))
     }
 
     /// The check of this number with its state, once it has started.

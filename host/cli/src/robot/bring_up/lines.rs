@@ -1,6 +1,7 @@
 //! `lines`: what `onetwo robot bring-up` prints, as text and as JSON.
 
 use protocol::bring_up::{CHECKS, Check, CheckState};
+use protocol::pulses::{Fired, Pulse, PulseRefusal};
 use serde_json::{Value, json};
 
 use super::progress::{Event, Summary};
@@ -40,6 +41,27 @@ impl Format {
                     CheckState::Failed(finding) => object["finding"] = json!(finding.to_string()),
                 }
                 format!("{object}\n")
+            }
+        }
+    }
+
+    /// The line of a pulse.
+    pub(super) fn pulse(self, pulse: Pulse, result: Result<Fired, PulseRefusal>) -> String {
+        let (micros, coil) = (pulse.micros, if pulse.chip { "chip" } else { "flat" });
+        match (self, result) {
+            (Self::Text, Err(refusal)) => format!("{micros:>5} µs {coil}: refused: {refusal}\n"),
+            (Self::Text, Ok(Fired { before, after, ball })) => {
+                let ball = if ball { "ball" } else { "no ball" };
+                format!("{micros:>5} µs {coil}: {before:>5.1} V -> {after:>5.1} V, {ball}\n")
+            }
+            (Self::Json, Err(refusal)) => {
+                let refused = refusal.to_string();
+                format!("{}\n", json!({ "coil": coil, "pulse_us": micros, "refused": refused }))
+            }
+            (Self::Json, Ok(Fired { before, after, ball })) => {
+                let (before, after) = (rounded(before), rounded(after));
+                let volts = json!({ "coil": coil, "pulse_us": micros, "ball": ball, "volts_before": before, "volts_after": after });
+                format!("{volts}\n")
             }
         }
     }

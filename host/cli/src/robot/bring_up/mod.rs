@@ -1,9 +1,12 @@
 //! `onetwo robot bring-up`: the checks of a robot's first start, as its bring-up image tells them by radio
-//! (docs/boards.md). It is that robot's host meanwhile: the check of the radio needs frames of one.
+//! (docs/boards.md). It is that robot's host meanwhile: the check of the radio needs frames of one. With
+//! `--kick` it measures the robot's kicker instead.
 //!
-//! [`progress`] reads the frames, [`lines`] writes what is printed; here are the link and its clock.
+//! [`progress`] reads the frames, [`kicks`] orders pulses, [`lines`] writes what is printed; here are the
+//! link and its clock.
 
 mod failure;
+mod kicks;
 mod lines;
 mod progress;
 
@@ -29,6 +32,7 @@ use crate::args::parsers::{radio_team, robot_number, seconds};
 use crate::output::{note, print_text};
 use crate::stop::{signal, stopped_by_hand};
 use failure::BringUpError;
+use kicks::{KickOptions, Kicks};
 use lines::Format;
 use progress::Progress;
 
@@ -47,18 +51,22 @@ pub(crate) struct BringUpArgs {
     /// The robot's number; by default the first that reports a check.
     #[arg(long, value_name = "N", value_parser = robot_number)]
     robot: Option<RobotId>,
-    /// A JSON object a line: each check when it begins and when it ends, then the counts.
+    #[command(flatten)]
+    kick: KickOptions,
+    /// A JSON object a line: each check when it begins and when it ends, then the counts; or each pulse.
     #[arg(long)]
     json: bool,
-    /// Fail after this number of seconds without a report.
+    /// Fail after this number of seconds without a report, or in which the capacitor is not charged.
     #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = seconds)]
     patience: f64,
 }
 
 /// A snapshot goes out this often, as from a host in play.
 const SNAPSHOT_EVERY: Duration = Duration::from_millis(10);
+/// Snapshots for each order of a pulse: ten orders within the silence that disarms a robot.
+const SNAPSHOTS_PER_ORDER: u8 = 5;
 
-/// Exit code 1 if a check failed.
+/// Exit code 1 if a check failed or a pulse was refused.
 pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
     let robots = RobotLink::parse(&args.robots)?;
     let read = key::read(&args.key_file)?;
@@ -80,7 +88,8 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
     note!("waiting for a robot's checks over {}; Ctrl-C ends it", args.robots);
     let began = Instant::now();
     let (mut news, mut due, mut snapshot) = (began, began, 0_u8);
-    while !progress.is_complete() {
+    let (mut kicks, mut refused) = (Kicks::new(&args.kick, Duration::from_secs_f64(args.patience)), 0);
+    while kicks.as_ref().map_or(!progress.is_complete(), |kicks| kicks.next.is_some()) {
         if stopped.load(Ordering::Relaxed) {
             break;
         }
@@ -93,6 +102,12 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
             if link.has_room() {
                 let now = protocol::Instant(began.elapsed().as_micros() as u64);
                 link.send(To::All, &host.seal(now, &empty(snapshot)))?;
+                if snapshot.is_multiple_of(SNAPSHOTS_PER_ORDER)
+                    && let Some(order) = kicks.as_mut().and_then(|kicks| kicks.order(Instant::now()))
+                    && let Some(robot) = args.robot
+                {
+                    link.send(To::One(robot), &host.seal_order(now, robot, &order))?;
+                }
             }
         }
         let wait = due.saturating_duration_since(Instant::now());
@@ -101,12 +116,22 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
             if taken.is_report {
                 news = Instant::now();
             }
-            let text: String = taken.events.iter().map(|event| format.event(event)).collect();
-            print_text(&text)?;
+            if let Some(kicks) = &mut kicks {
+                if let Some((pulse, result)) = taken.kicker.and_then(|report| kicks.take(news, report)) {
+                    refused += u32::from(result.is_err());
+                    print_text(&format.pulse(pulse, result))?;
+                }
+            } else {
+                let text: String = taken.events.iter().map(|event| format.event(event)).collect();
+                print_text(&text)?;
+            }
         }
         while let Some(notice) = link.notice() {
             note!("{notice}");
         }
+    }
+    if kicks.is_some_and(|kicks| kicks.next.is_none()) {
+        return Ok(if refused == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE });
     }
     if let Some(summary) = progress.summary() {
         if !summary.hears_us {

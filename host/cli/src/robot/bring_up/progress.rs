@@ -5,8 +5,9 @@
 
 use std::collections::BTreeSet;
 
-use protocol::bring_up::{BringUpReport, CHECKS, Check, CheckState, is_report, open};
-use protocol::frame::{Frame, Refusal, Sender, Sessions, TeamKey, TeamKeys};
+use protocol::bring_up::{self, BringUpReport, CHECKS, Check, CheckState};
+use protocol::frame::{Frame, Refusal, Sender, Sessions, TeamKey, TeamKeys, open_report};
+use protocol::pulses::{self, PulseReport};
 use protocol::{RobotId, TeamId};
 
 /// A change since the packet before.
@@ -24,6 +25,8 @@ pub(super) struct Taken {
     /// A report of the robot that is followed, new or repeated.
     pub(super) is_report: bool,
     pub(super) events: Vec<Event>,
+    /// State of its kicker, with the robot's start.
+    pub(super) kicker: Option<(u32, PulseReport)>,
 }
 
 /// Counts of the list.
@@ -103,16 +106,24 @@ impl Progress {
 
     fn read(&mut self, packet: &[u8]) -> Result<Taken, Refusal> {
         let frame = Frame::parse(packet, self.team)?;
-        if !is_report(&frame) {
-            if let Sender::Robot(robot) = frame.sender {
-                self.others.insert(robot);
+        let (robot, check, kicker) = match (frame.sender, frame.payload.first()) {
+            (Sender::Robot(robot), Some(&bring_up::KIND)) => {
+                (robot, Some(bring_up::open(packet, self.team, &self.keys)?.2), None)
             }
-            return Ok(Taken::default());
-        }
-        let (frame, robot, report) = open(packet, self.team, &self.keys)?;
+            (Sender::Robot(robot), Some(&pulses::KIND)) => (
+                robot,
+                None,
+                Some(open_report::<PulseReport>(packet, (self.team, &self.keys), pulses::KIND)?.2),
+            ),
+            (sender, _) => {
+                self.others.extend(sender.robot());
+                return Ok(Taken::default());
+            }
+        };
         self.sessions.check(&frame)?;
-        if report.host != 0 && report.host != self.epoch {
-            self.other_host = Some(report.host);
+        let host = check.map(|report| report.host).or(kicker.map(|report| report.host)).unwrap_or_default();
+        if host != 0 && host != self.epoch {
+            self.other_host = Some(host);
             return Ok(Taken::default());
         }
         let followed = self.list.as_ref().map(|list| list.robot).or(self.only);
@@ -121,7 +132,8 @@ impl Progress {
             return Ok(Taken::default());
         }
         self.sessions.accept(&frame);
-        Ok(Taken { is_report: true, events: self.follow(robot, frame.epoch, &report) })
+        let events = check.map(|report| self.follow(robot, frame.epoch, &report)).unwrap_or_default();
+        Ok(Taken { is_report: true, events, kicker: kicker.map(|report| (frame.epoch, report)) })
     }
 
     fn follow(&mut self, robot: RobotId, start: u32, report: &BringUpReport) -> Vec<Event> {
