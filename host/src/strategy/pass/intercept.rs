@@ -179,7 +179,7 @@ impl BallPath {
     #[inline]
     fn look(&self, opponent: &PassOpponent, along: f32, ball_time: f32, worst: &mut Interceptor) -> f32 {
         let place = self.from + self.along * along;
-        let mut time = self.touch_time(&opponent.mover, place);
+        let mut time = touch_time(&opponent.mover, place, self.body, self.reaction);
         if opponent.head_start > 0.0 {
             // Until the kick it keeps the distance that the rules ask for.
             time = (time - opponent.head_start).max(opponent.mover.time_from_rest(KEPT_OFF_M - along));
@@ -189,15 +189,15 @@ impl BallPath {
         }
         time
     }
+}
 
-    /// When it touches a ball at `place`, s. No reaction is needed for a ball that comes to it; that gain
-    /// fades out with the distance it has to drive.
-    #[inline]
-    fn touch_time(&self, mover: &Mover, place: Point<Attack>) -> f32 {
-        let time = mover.time_to_touch(place, self.body);
-        // Time and distance are proportional here; 0.24 s are 0.1 m from standstill.
-        time + self.reaction * (time * (1.0 / REACTION_TIME_S)).min(1.0)
-    }
+/// When a robot touches a ball that passes `place`, s, by a `body` this wide and after this `reaction`. No
+/// reaction is needed for a ball that comes to it; that gain fades out with the distance it has to drive.
+#[inline]
+pub fn touch_time(mover: &Mover, place: Point<Attack>, body: f32, reaction: f32) -> f32 {
+    let time = mover.time_to_touch(place, body);
+    // Time and distance are proportional here; 0.24 s are 0.1 m from standstill.
+    time + reaction * (time * (1.0 / REACTION_TIME_S)).min(1.0)
 }
 
 #[cfg(test)]
@@ -288,7 +288,8 @@ mod tests {
                     let Some(ball) = touchable(s) else { continue };
                     for opponent in &opponents {
                         let place = Point::new(s, 0.0);
-                        truth = truth.min(path.touch_time(&opponent.mover, place) - ball);
+                        truth =
+                            truth.min(touch_time(&opponent.mover, place, path.body, path.reaction) - ball);
                     }
                 }
                 let found = found.map_or(SAFE, |found| found.margin).max(-SAFE);

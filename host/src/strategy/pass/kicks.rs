@@ -151,6 +151,7 @@ impl ChipKick {
 pub struct Kicks {
     constants: PassConstants,
     ground: BallModel,
+    chip: ChipModel,
     /// Chips by the distance where they roll, [`CHIP_STEP_M`] apart from [`CHIP_LENGTH_MIN_M`] on.
     chips: heapless::Vec<ChipKick, CHIPS>,
 }
@@ -163,7 +164,7 @@ impl Kicks {
 
     /// Computed once for a league and a field surface.
     pub fn new(constants: PassConstants, ground: BallModel, chip: ChipModel) -> Self {
-        let mut kicks = Self { constants, ground, chips: heapless::Vec::new() };
+        let mut kicks = Self { constants, ground, chip, chips: heapless::Vec::new() };
         for i in 0..CHIPS {
             let rolls = CHIP_LENGTH_MIN_M + i as f32 * CHIP_STEP_M;
             let Some(kick) = chip_that_rolls(rolls, &constants, &ground, &chip) else { break };
@@ -182,6 +183,11 @@ impl Kicks {
     /// Model of rolling balls on this field surface.
     pub fn ground(&self) -> &BallModel {
         &self.ground
+    }
+
+    /// Model of chipped balls on this field surface.
+    pub fn chips_as(&self) -> &ChipModel {
+        &self.chip
     }
 
     /// The fastest flat kick over `distance` m that the receiver can control.

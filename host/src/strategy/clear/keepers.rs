@@ -1,0 +1,125 @@
+//! `keepers`: the keeper's clearances: several kicks in each direction, rated by which team is first on the
+//! ball's way, or by where it leaves the field. Attack frame, SI units.
+
+use geometry::{Attack, Point, Segment, Vector};
+use motion::trajectory::FreeLimits;
+use protocol::RobotId;
+use protocol::host::KickOrder;
+
+use super::super::pass::Kicks;
+use super::super::pass::conditions::likely;
+use super::super::pass::reach::Mover;
+use super::super::view::{ROBOTS_MAX, View, ViewRobot};
+use super::first_touch::{FirstTouch, Flight, Touchers, Way};
+use super::{CHIP_RISES_M, Clearance, LENGTH_MIN_M, PASSES_BY_M, Release, SOONER_WIDTH_S};
+
+/// Kicks of a clearance, cm/s: along the ground from one that stops after 3 m to the fastest; chips whose
+/// first hop, v²/g at 45°, is 0.9, 1.6, 2.5 and 3.7 m.
+const KICKS: [KickOrder; 8] = [
+    KickOrder::Flat(200),
+    KickOrder::Flat(300),
+    KickOrder::Flat(450),
+    KickOrder::Flat(600),
+    KickOrder::Chip(300),
+    KickOrder::Chip(400),
+    KickOrder::Chip(500),
+    KickOrder::Chip(600),
+];
+/// A faster ball bounces off a robot that it comes to, m/s: half more than a pass arrives with.
+const TAKEN_BELOW_M_S: f32 = 3.0;
+/// A team that comes later than the other by this is not first, s: three widths of the comparison.
+const LATER_MAX_S: f32 = 0.9;
+/// A ball that leaves this near their goal line leaves over it, m.
+const ON_LINE_M: f32 = 1e-3;
+
+/// What clearances of the keeper from one place are rated by.
+pub(super) struct KeepersRating<'v> {
+    view: &'v View,
+    who: RobotId,
+    from: Point<Attack>,
+    release: Release<'v>,
+    /// Field players of ours that may have the ball next.
+    ours: Movers,
+    theirs: Movers,
+    kicks: &'v Kicks,
+}
+
+type Movers = heapless::Vec<Mover, ROBOTS_MAX>;
+
+impl<'v> KeepersRating<'v> {
+    pub(super) fn of(view: &'v View, kicks: &'v Kicks, who: &ViewRobot, from: Point<Attack>) -> Self {
+        let c = kicks.constants();
+        let ours = view.ours.iter().filter(|robot| robot.id != who.id && robot.id != view.keeper);
+        let mover =
+            |robot: &ViewRobot, limits: &FreeLimits| Mover::new(robot.position, robot.velocity, limits);
+        Self {
+            view,
+            who: who.id,
+            from,
+            release: Release::of(view, kicks, who, from),
+            ours: ours.map(|robot| mover(robot, &c.receiver)).collect(),
+            theirs: view.theirs.iter().map(|robot| mover(robot, &c.opponent)).collect(),
+            kicks,
+        }
+    }
+
+    /// The clearances with every kick in each of `directions`.
+    pub(super) fn of_directions(
+        &self,
+        directions: impl Iterator<Item = Vector<Attack>>,
+    ) -> impl Iterator<Item = Clearance> {
+        let flights = KICKS.map(|kick| (kick, Flight::of(kick, self.kicks)));
+        directions.flat_map(move |along| {
+            let way = Way::of(self.view, self.from, along);
+            flights.each_ref().map(|(kick, flight)| self.clearance(&way, *kick, flight))
+        })
+    }
+
+    /// The worth of a clearance that was chosen earlier.
+    pub(super) fn again(&self, at: Point<Attack>, kick: KickOrder) -> f32 {
+        let way = Way::of(self.view, self.from, (at - self.from).unit().unwrap_or_default());
+        self.clearance(&way, kick, &Flight::of(kick, self.kicks)).worth
+    }
+
+    fn clearance(&self, way: &Way, kick: KickOrder, flight: &Flight) -> Clearance {
+        let half = self.view.field.length * 0.5;
+        let c = self.kicks.constants();
+        let lost_at = |at| self.view.stakes.of_theirs(half, at);
+        let theirs =
+            Touchers { movers: &self.theirs, reaction: c.reaction, after: 0.0, below: f32::INFINITY };
+        let theirs = flight.first(way, &theirs, f32::INFINITY);
+        let until = theirs.map_or(f32::INFINITY, |touch| touch.time + LATER_MAX_S);
+        let ours = Touchers {
+            movers: &self.ours,
+            reaction: c.reaction,
+            after: c.shortest_time,
+            below: TAKEN_BELOW_M_S,
+        };
+        let ours = flight.first(way, &ours, until);
+        let leaves = way.at(way.ends);
+        let (at, there) = match (ours, theirs) {
+            // Over their goal line it is a free kick of theirs from here, else from where it leaves.
+            (None, None) if leaves.x() >= half - ON_LINE_M => (leaves, lost_at(self.from)),
+            (None, None) => (leaves, lost_at(leaves)),
+            _ => {
+                let time = |touch: Option<FirstTouch>| touch.map_or(f32::INFINITY, |touch| touch.time);
+                let place = |touch: Option<FirstTouch>| touch.map_or(leaves, |touch| way.at(touch.distance));
+                let had = likely(time(theirs) - time(ours), SOONER_WIDTH_S);
+                let worth =
+                    had * self.view.stakes.of_ours(half, place(ours)) + (1.0 - had) * lost_at(place(theirs));
+                (place(if had < 0.5 { theirs } else { ours }), worth)
+            }
+        };
+        // Our own bodies before the robot stop it.
+        let open = match kick {
+            KickOrder::Chip(_) => CHIP_RISES_M,
+            KickOrder::Flat(_) => flight.gone(c.shortest_time),
+        };
+        let start = Segment::new(self.from, way.at(open));
+        let mut teammates = self.view.ours.iter().filter(|robot| robot.id != self.who);
+        let stopped = teammates.any(|robot| start.distance_to(robot.position) < PASSES_BY_M);
+        let there = if stopped { lost_at(self.from) } else { there };
+        let at = way.at(at.distance(self.from).max(LENGTH_MIN_M));
+        Clearance { at, kick, worth: self.release.worth(at, there) }
+    }
+}
