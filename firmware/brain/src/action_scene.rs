@@ -1,4 +1,5 @@
-//! `action_scene`: inputs of one step of a robot's part of a case, and what follows from them. Field frame, SI.
+//! `action_scene`: inputs of one step of a robot's part of a case, and what follows from them. Field frame,
+//! SI.
 
 use casebase::{Case, CaseBase, CaseRobot, Leg, PointMm};
 use geometry::{Angle, Field, Point};

@@ -12,8 +12,8 @@ use protocol::{Duration, Instant, RobotId};
 use rules::{Phase, Side, limits};
 
 use super::order::{Order, OrderReason, Role, Task};
-use super::restart;
 use super::view::{ROBOTS_MAX, View, ViewRobot};
+use super::{off_ball, restart};
 
 /// Fewer robots of ours must have been allowed on the field for this time before one comes back: a robot that
 /// vision lost for a moment calls none back.
@@ -153,7 +153,7 @@ fn waiting_places(view: &View) -> heapless::Vec<Point<Attack>, PLACES_MAX> {
     let step = (to - from).unit().unwrap_or_default() * SPACING_M;
     let along = (0..count).map(|i| from + step * i as f32);
     let both = along.flat_map(|at| [at, Point::new(at.x(), -at.y())]);
-    let clear = |at: &Point<Attack>| restart::kept_off(view, *at) == *at;
+    let clear = |at: &Point<Attack>| off_ball::kept_off(view, *at) == *at;
     both.filter(clear).collect()
 }
 

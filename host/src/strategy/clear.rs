@@ -1,6 +1,6 @@
-//! `clear`: clearances, rated on the scale of all actions: a ball sent away from our goal, flat or high, as soon
-//! as the robot can release it: a field player's to where a teammate is sooner than any opponent, the keeper's by
-//! who is first on its way ([`first_touch`]). Attack frame, SI units.
+//! `clear`: clearances, rated on the scale of all actions: a ball sent away from our goal, flat or high, as
+//! soon as the robot can release it: a field player's to where a teammate is sooner than any opponent, the
+//! keeper's by which team is first on its way. Attack frame, SI units.
 
 mod first_touch;
 mod keepers;
@@ -74,7 +74,6 @@ pub fn clearance(
     let directions = (0..DIRECTIONS)
         .map(|step| Vector::polar(1.0, Angle::degrees(STEP_DEG * f32::from(step))))
         .filter(|ray| ray.x() > BACK_MAX && fits(*ray));
-    let better = |best: Clearance, next: Clearance| if next.worth > best.worth { next } else { best };
     if who.id == view.keeper {
         return KeepersRating::of(view, kicks, who, from).of_directions(directions).reduce(better);
     }
@@ -92,6 +91,10 @@ pub fn clearance(
         })
         .map(|(at, kick)| Clearance { at, kick, worth: rating.worth(at, kick) })
         .reduce(better)
+}
+
+fn better(best: Clearance, next: Clearance) -> Clearance {
+    if next.worth > best.worth { next } else { best }
 }
 
 /// A clearance that was chosen earlier, rated now.
@@ -170,8 +173,8 @@ fn soonest<'r>(robots: impl Iterator<Item = &'r ViewRobot>, at: Point<Attack>) -
     robots.map(|robot| roles::time_to(robot, at)).fold(f32::INFINITY, f32::min)
 }
 
-/// What clearances of a field player from one place are rated by. Rated as the keeper's they were preferred to
-/// passes: of 300 free kicks with a marker 64 in place of 164 reached a teammate.
+/// What clearances of a field player from one place are rated by. Rated as the keeper's they were preferred
+/// to passes: of 300 free kicks with a marker 64 in place of 164 reached a teammate.
 struct Rating<'v> {
     view: &'v View,
     who: RobotId,

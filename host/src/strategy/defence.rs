@@ -5,7 +5,7 @@ use geometry::{Angle, Attack, Point, Vector};
 use protocol::host::KickOrder;
 
 use super::order::{OrderReason, Task};
-use super::view::{View, ViewBall, nearest};
+use super::view::{ROOM_MAX_M, View, ViewBall, nearest};
 
 /// The keeper's line lies this far before the goal line, m: a body, so that the posts do not stop it.
 const KEEPER_OUT_M: f32 = 0.15;
@@ -38,8 +38,6 @@ const CLEAR_LENGTH_MIN_M: f32 = 1.2;
 const ROOM_FOR_FLAT_M: f32 = 0.35;
 /// cm/s, 3-D: at 45° the first hop is v²/g = 1.6 m.
 const CLEAR_CHIP_CM_S: u16 = 400;
-/// Room above this gives no further value, m.
-const ROOM_ENOUGH_M: f32 = 1.0;
 /// The ball counts as at least this far before our goal line when defenders place themselves, m.
 const BALL_AHEAD_MIN_M: f32 = 0.15;
 /// Defenders' centres stand this far outside the area, m: a body (0.09) and the error of tracking and
@@ -99,7 +97,7 @@ pub fn clearance(view: &View, ball: &ViewBall) -> (Point<Attack>, KickOrder, f32
     let best = teammates
         .filter(far)
         .chain(wings)
-        .map(|at| (at, room_along(view, ball.position, at)))
+        .map(|at| (at, view.room_along(ball.position, at)))
         .reduce(|best, next| if next.1 > best.1 { next } else { best });
     let (at, room) = best.unwrap_or((Point::new(0.0, 0.0), 0.0));
     (at, clearing_kick(ball, at, room), room)
@@ -112,7 +110,7 @@ pub fn clearance_outwards(view: &View, ball: &ViewBall) -> (Point<Attack>, KickO
     let turned = |turn: f32| {
         let at = ball.position + out.rotated(Angle::new(turn)) * CLEAR_AHEAD_M;
         let at = view.clamp(at, CLEAR_INSIDE_M);
-        (at, room_along(view, ball.position, at))
+        (at, view.room_along(ball.position, at))
     };
     let best = [CLEAR_TURN_RAD, -CLEAR_TURN_RAD].map(turned);
     let (at, room) =
@@ -137,13 +135,13 @@ pub fn clearance_beside(
                 return None;
             }
             let at = view.clamp(ball.position + ray * CLEAR_AHEAD_M, CLEAR_INSIDE_M);
-            let room = room_along(view, ball.position, at);
+            let room = view.room_along(ball.position, at);
             let teammates =
                 view.ours.iter().filter(|teammate| teammate.id != who.id && teammate.id != view.keeper);
             let blocked = nearest(teammates, lines_up).is_some_and(|(_, distance)| distance < BODIES_APART_M);
             let costs = CLEAR_TURN_COST_M * turn.unsigned_abs() as f32
                 + CLEAR_PATH_COST * who.position.distance(lines_up)
-                + if blocked { ROOM_ENOUGH_M } else { 0.0 };
+                + if blocked { ROOM_MAX_M } else { 0.0 };
             Some((at, room, room - costs))
         })
         .reduce(|best, next| if next.2 > best.2 { next } else { best });
@@ -156,12 +154,6 @@ pub fn clearance_beside(
 fn clearing_kick(ball: &ViewBall, at: Point<Attack>, room: f32) -> KickOrder {
     let flat = super::support::push_kick(at.distance(ball.position));
     if room > ROOM_FOR_FLAT_M { flat } else { KickOrder::Chip(CLEAR_CHIP_CM_S) }
-}
-
-/// Distance of the nearest opponent from the path of a ball, m; at most a metre.
-pub fn room_along(view: &View, from: Point<Attack>, to: Point<Attack>) -> f32 {
-    let ray = geometry::Segment::new(from, to);
-    view.theirs.iter().map(|robot| ray.distance_to(robot.position)).fold(ROOM_ENOUGH_M, f32::min)
 }
 
 /// Places of two defenders: side by side at the edge of our area, across the line from the ball to our goal.

@@ -17,6 +17,7 @@ mod coach;
 pub mod coerce;
 pub mod counters;
 pub mod defence;
+mod off_ball;
 pub mod opponents;
 mod order;
 pub mod pass;

@@ -6,7 +6,6 @@ use motion::ball::BallModel;
 use protocol::RobotId;
 use protocol::host::KickOrder;
 
-use super::defence::room_along;
 use super::pass::{Kicks, PassScene};
 use super::view::{ROBOTS_MAX, View, ViewRobot};
 
@@ -113,11 +112,11 @@ pub fn pass_places(
 /// The value of having the ball at `place` after a pass from `ball`: room on the path, room there, and a
 /// clear line to the goal.
 pub fn worth(view: &View, ball: Point<Attack>, place: Point<Attack>) -> f32 {
-    let room_share = room_along(view, ball, place).min(ROOM_ENOUGH_M) / ROOM_ENOUGH_M;
+    let room_share = view.room_along(ball, place).min(ROOM_ENOUGH_M) / ROOM_ENOUGH_M;
     let there =
         view.nearest_theirs(place).map_or(ROOM_ENOUGH_M, |(_, d)| d).min(ROOM_ENOUGH_M) / ROOM_ENOUGH_M;
     let ahead = ((place.x() - ball.x()) / view.field.length + 0.5).clamp(0.0, 1.0);
-    let shot = room_along(view, place, view.their_goal()).min(ROOM_ENOUGH_M) / ROOM_ENOUGH_M;
+    let shot = view.room_along(place, view.their_goal()).min(ROOM_ENOUGH_M) / ROOM_ENOUGH_M;
     room_share * there * (0.4 + 0.3 * ahead + 0.3 * shot)
 }
 
@@ -192,7 +191,7 @@ pub fn target(view: &View, kicker: RobotId, ball: Point<Attack>) -> Target {
         .reduce(|best, next| if next.1 > best.1 { next } else { best });
     match best {
         Some((teammate, worth)) if worth > PASS_WORTH_MIN => {
-            let room = room_along(view, ball, teammate.position);
+            let room = view.room_along(ball, teammate.position);
             Target::Teammate { id: teammate.id, at: teammate.position, room }
         }
         _ if room > BODIES_ROOM_M && ball.distance(view.their_goal()) < SHOT_LENGTH_MAX_M => {
@@ -200,8 +199,8 @@ pub fn target(view: &View, kicker: RobotId, ball: Point<Attack>) -> Target {
         }
         // A kick at an opponent's body, from beside the touch line, goes out for them: a pass back to any
         // teammate there is better.
-        Some((teammate, _)) if room_along(view, ball, teammate.position) > BODIES_ROOM_M => {
-            let room = room_along(view, ball, teammate.position);
+        Some((teammate, _)) if view.room_along(ball, teammate.position) > BODIES_ROOM_M => {
+            let room = view.room_along(ball, teammate.position);
             Target::Teammate { id: teammate.id, at: teammate.position, room }
         }
         _ => {
@@ -210,7 +209,7 @@ pub fn target(view: &View, kicker: RobotId, ball: Point<Attack>) -> Target {
                 .map(|y| Point::new((ball.x() + 2.0).min(view.field.length * 0.5 - 1.5), y));
             let (at, room) = ahead
                 .into_iter()
-                .map(|at| (at, room_along(view, ball, at)))
+                .map(|at| (at, view.room_along(ball, at)))
                 .fold((ahead[0], -1.0), |best, next| if next.1 > best.1 { next } else { best });
             Target::Ahead { at, room }
         }

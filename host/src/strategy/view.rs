@@ -2,7 +2,7 @@
 //! (docs/architecture.md §2.1: the only module that flips). SI.
 
 use casebase::CaseRobot;
-use geometry::{Angle, Attack, Field, GoalEnd, Point, Pose, Vector};
+use geometry::{Angle, Attack, Field, GoalEnd, Point, Pose, Segment, Vector};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::{CaseId, Duration, Instant, RobotId};
 use rules::{Colour, FieldSpec, Phase, Side};
@@ -12,6 +12,9 @@ use crate::world::World;
 
 /// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
 pub(super) const HAS_BALL_WITHIN_M: f32 = 0.2;
+
+/// Room above this gives no further value, m.
+pub(super) const ROOM_MAX_M: f32 = 1.0;
 
 /// Most robots of a team in a view: one per id.
 pub const ROBOTS_MAX: usize = RobotId::COUNT;
@@ -334,6 +337,12 @@ impl View {
     /// The opponent nearest to `point`, with its distance, m.
     pub fn nearest_theirs(&self, point: Point<Attack>) -> Option<(&ViewRobot, f32)> {
         nearest(self.theirs.iter(), point)
+    }
+
+    /// Distance of the nearest opponent from the path of a ball, m; at most [`ROOM_MAX_M`].
+    pub fn room_along(&self, from: Point<Attack>, to: Point<Attack>) -> f32 {
+        let ray = Segment::new(from, to);
+        self.theirs.iter().map(|robot| ray.distance_to(robot.position)).fold(ROOM_MAX_M, f32::min)
     }
 
     /// Distance of the nearest opponent from a place, m; infinite without opponents.

@@ -9,6 +9,7 @@ use super::super::pass::Kicks;
 use super::super::pass::intercept::touch_time;
 use super::super::pass::reach::Mover;
 use super::super::view::View;
+use super::PASSES_BY_M;
 
 /// Robots are looked at where the ball has gone on by this, m, or after this time, s: half of what a
 /// comparison of who is sooner resolves.
@@ -19,8 +20,6 @@ const STEP_S: f32 = 0.15;
 const LONGEST_M: f32 = 10.0;
 const RESTING_SPEED_M_S: f32 = 0.2;
 const STEPS_MAX: usize = 80;
-/// From a ball's way to the centre of a robot that touches it, m: both radii and a kick's scatter.
-const TOUCHES_WITHIN_M: f32 = 0.13;
 
 /// The progress of a ball from its kick on.
 pub(super) struct Flight {
@@ -72,10 +71,9 @@ impl Flight {
     /// After a kick on the field surface of `kicks`.
     pub(super) fn of(kick: KickOrder, kicks: &Kicks) -> Self {
         let from = Point::<Attack>::new(0.0, 0.0);
-        let along = |speed| Vector::new(speed, 0.0);
         match kick {
             KickOrder::Flat(cm_s) => {
-                let path = kicks.ground().kicked(from, along(f32::from(cm_s) * 0.01));
+                let path = kicks.ground().kicked(from, Vector::new(f32::from(cm_s) * 0.01, 0.0));
                 Self::followed(|time| {
                     let (distance, speed) = path.progress(time);
                     (distance, speed, 0.0)
@@ -84,7 +82,8 @@ impl Flight {
             KickOrder::Chip(cm_s) => {
                 let slope = kicks.constants().chip_slope;
                 let speed = f32::from(cm_s) * 0.01 / math::hypot(1.0, slope);
-                let path = kicks.chips_as().chipped(from, along(speed), speed * slope, kicks.ground());
+                let path =
+                    kicks.chips_as().chipped(from, Vector::new(speed, 0.0), speed * slope, kicks.ground());
                 Self::followed(|time| {
                     let state = path.at(time);
                     (state.ground.position.x(), state.ground.velocity.norm(), state.height)
@@ -111,8 +110,8 @@ impl Flight {
         Self { steps }
     }
 
-    /// The first touch by one of `touchers`, no later than `until`, s; `None` where the ball has left the field
-    /// before.
+    /// The first touch by one of `touchers`, no later than `until`, s; `None` where the ball has left the
+    /// field before.
     pub(super) fn first(&self, way: &Way, touchers: &Touchers<'_>, until: f32) -> Option<FirstTouch> {
         for (number, &Progress { distance, time, speed }) in self.steps.iter().enumerate() {
             if distance > way.ends || time > until {
@@ -123,16 +122,15 @@ impl Flight {
             }
             let at = way.from + way.along * distance;
             let rests = number + 1 == self.steps.len();
-            let near = |mover: &&Mover| {
-                let reach = mover.farthest_touched(time) + TOUCHES_WITHIN_M;
-                let off = at - mover.position;
-                rests || off.dot(off) <= reach * reach
-            };
             let soonest = touchers
                 .movers
                 .iter()
-                .filter(near)
-                .map(|mover| touch_time(mover, at, TOUCHES_WITHIN_M, touchers.reaction))
+                .filter(|mover| {
+                    let reach = mover.farthest_touched(time) + PASSES_BY_M;
+                    let off = at - mover.position;
+                    rests || off.dot(off) <= reach * reach
+                })
+                .map(|mover| touch_time(mover, at, PASSES_BY_M, touchers.reaction))
                 .fold(f32::INFINITY, f32::min);
             if soonest <= time || rests {
                 return Some(FirstTouch { time: soonest.max(time), distance });
@@ -150,9 +148,6 @@ impl Flight {
 impl Way {
     /// From `from` towards `along`, of length 1.
     pub(super) fn of(view: &View, from: Point<Attack>, along: Vector<Attack>) -> Self {
-        let until = |at: f32, along: f32, half: f32| {
-            if along == 0.0 { f32::INFINITY } else { ((half * along.signum() - at) / along).max(0.0) }
-        };
         let ends = until(from.x(), along.x(), view.field.length * 0.5).min(until(
             from.y(),
             along.y(),
@@ -169,6 +164,11 @@ impl Way {
     pub(super) fn at(&self, distance: f32) -> Point<Attack> {
         self.from + self.along * distance
     }
+}
+
+/// Distance along a direction's share `along` of an axis until `half` of the field is left behind, m.
+fn until(at: f32, along: f32, half: f32) -> f32 {
+    if along == 0.0 { f32::INFINITY } else { ((half * along.signum() - at) / along).max(0.0) }
 }
 
 #[cfg(test)]

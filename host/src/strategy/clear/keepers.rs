@@ -50,15 +50,13 @@ impl<'v> KeepersRating<'v> {
     pub(super) fn of(view: &'v View, kicks: &'v Kicks, who: &ViewRobot, from: Point<Attack>) -> Self {
         let c = kicks.constants();
         let ours = view.ours.iter().filter(|robot| robot.id != who.id && robot.id != view.keeper);
-        let mover =
-            |robot: &ViewRobot, limits: &FreeLimits| Mover::new(robot.position, robot.velocity, limits);
         Self {
             view,
             who: who.id,
             from,
             release: Release::of(view, kicks, who, from),
-            ours: ours.map(|robot| mover(robot, &c.receiver)).collect(),
-            theirs: view.theirs.iter().map(|robot| mover(robot, &c.opponent)).collect(),
+            ours: ours.map(|robot| mover_of(robot, &c.receiver)).collect(),
+            theirs: view.theirs.iter().map(|robot| mover_of(robot, &c.opponent)).collect(),
             kicks,
         }
     }
@@ -84,7 +82,6 @@ impl<'v> KeepersRating<'v> {
     fn clearance(&self, way: &Way, kick: KickOrder, flight: &Flight) -> Clearance {
         let half = self.view.field.length * 0.5;
         let c = self.kicks.constants();
-        let lost_at = |at| self.view.stakes.of_theirs(half, at);
         let theirs =
             Touchers { movers: &self.theirs, reaction: c.reaction, after: 0.0, below: f32::INFINITY };
         let theirs = flight.first(way, &theirs, f32::INFINITY);
@@ -99,15 +96,14 @@ impl<'v> KeepersRating<'v> {
         let leaves = way.at(way.ends);
         let (at, there) = match (ours, theirs) {
             // Over their goal line it is a free kick of theirs from here, else from where it leaves.
-            (None, None) if leaves.x() >= half - ON_LINE_M => (leaves, lost_at(self.from)),
-            (None, None) => (leaves, lost_at(leaves)),
+            (None, None) if leaves.x() >= half - ON_LINE_M => (leaves, self.lost_at(self.from)),
+            (None, None) => (leaves, self.lost_at(leaves)),
             _ => {
-                let time = |touch: Option<FirstTouch>| touch.map_or(f32::INFINITY, |touch| touch.time);
-                let place = |touch: Option<FirstTouch>| touch.map_or(leaves, |touch| way.at(touch.distance));
-                let had = likely(time(theirs) - time(ours), SOONER_WIDTH_S);
-                let worth =
-                    had * self.view.stakes.of_ours(half, place(ours)) + (1.0 - had) * lost_at(place(theirs));
-                (place(if had < 0.5 { theirs } else { ours }), worth)
+                let had = likely(time_of(theirs) - time_of(ours), SOONER_WIDTH_S);
+                let [ours, theirs] =
+                    [ours, theirs].map(|touch| touch.map_or(leaves, |touch| way.at(touch.distance)));
+                let worth = had * self.view.stakes.of_ours(half, ours) + (1.0 - had) * self.lost_at(theirs);
+                (if had < 0.5 { theirs } else { ours }, worth)
             }
         };
         // Our own bodies before the robot stop it.
@@ -118,8 +114,21 @@ impl<'v> KeepersRating<'v> {
         let start = Segment::new(self.from, way.at(open));
         let mut teammates = self.view.ours.iter().filter(|robot| robot.id != self.who);
         let stopped = teammates.any(|robot| start.distance_to(robot.position) < PASSES_BY_M);
-        let there = if stopped { lost_at(self.from) } else { there };
+        let there = if stopped { self.lost_at(self.from) } else { there };
         let at = way.at(at.distance(self.from).max(LENGTH_MIN_M));
         Clearance { at, kick, worth: self.release.worth(at, there) }
     }
+    /// The worth of a ball that is theirs at `at`.
+    fn lost_at(&self, at: Point<Attack>) -> f32 {
+        self.view.stakes.of_theirs(self.view.field.length * 0.5, at)
+    }
+}
+
+fn mover_of(robot: &ViewRobot, limits: &FreeLimits) -> Mover {
+    Mover::new(robot.position, robot.velocity, limits)
+}
+
+/// When a team is at the ball, s.
+fn time_of(touch: Option<FirstTouch>) -> f32 {
+    touch.map_or(f32::INFINITY, |touch| touch.time)
 }

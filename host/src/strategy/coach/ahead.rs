@@ -5,7 +5,6 @@ use protocol::{Instant, RobotId};
 use rules::{Phase, Side};
 
 use super::super::counters::Sent;
-use super::super::defence::room_along;
 use super::super::order::{OrderReason, Task};
 use super::super::pass::ahead::{PassAhead, PasserMove, Places, Times};
 use super::super::pass::{PassScene, Rating};
@@ -80,7 +79,7 @@ impl Coach {
         let Some(best) = likely else { return usual };
         self.restart.ahead = Some(Ahead::new(best.receiver, best.rating, view.now, None));
         let at = best.rating.at;
-        Target::Teammate { id: best.receiver, at, room: room_along(view, ball.position, at) }
+        Target::Teammate { id: best.receiver, at, room: view.room_along(ball.position, at) }
     }
 
     /// The kicker's task for its pass ahead, if it has one.

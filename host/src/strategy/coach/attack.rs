@@ -11,7 +11,6 @@ use motion::trajectory::CalcMotion;
 use protocol::{Duration, Instant, RobotId};
 
 use super::super::counters::Sent;
-use super::super::defence::room_along;
 use super::super::order::{OrderReason, Role, Task};
 use super::super::pass::bridge::{RADIUS, refine};
 use super::super::pass::shot::shot;
@@ -85,7 +84,7 @@ impl Coach {
         match *action {
             Action::PlayOn => None,
             Action::Clear { at, kick } => {
-                let room = plan.view.ball.map_or(0.0, |ball| room_along(plan.view, ball.position, at));
+                let room = plan.view.ball.map_or(0.0, |ball| plan.view.room_along(ball.position, at));
                 Some((Task::Kick { at, kick }, OrderReason::BestTarget { room }))
             }
             Action::Shot { at, goal } => {

@@ -9,7 +9,6 @@ use super::super::coerce::tactics::Models;
 use super::super::coerce::{
     ByPassLocation, CoercePart, CoerceProgress, CoerceSettings, FinalAttack, Planner,
 };
-use super::super::defence;
 use super::super::order::{OrderReason, Role, Task};
 use super::super::pass::{Kicks, PassScene};
 use super::super::support::{self, Target};
@@ -90,7 +89,7 @@ impl Coach {
             self.restart.ahead = begin(view, self.passes.kicks(), kicker, ball, &attack);
             self.restart.aim = self.restart.ahead.map(|ahead| {
                 let (id, at) = (ahead.receiver, ahead.rating.at);
-                (view.now, Target::Teammate { id, at, room: defence::room_along(view, ball.position, at) })
+                (view.now, Target::Teammate { id, at, room: view.room_along(ball.position, at) })
             });
             self.restart.gave_up = self.restart.ahead.is_none();
         }

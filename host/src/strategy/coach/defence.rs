@@ -108,7 +108,7 @@ impl DefenceState {
         // There is no room behind it: it is approached from the field, and turned.
         if !has_at_front(robot, ball) {
             let to_ball = ball.position - robot.position;
-            let room = defence::room_along(view, robot.position, ball.position);
+            let room = view.room_along(robot.position, ball.position);
             return Some((Task::GetBall { face: ball.position + to_ball }, OrderReason::BestTarget { room }));
         }
         Some(self.kept_clearance(view, who, ball, |view| {
@@ -178,7 +178,7 @@ impl DefenceState {
             let places = [BEHIND_BALL_M, contact::TOUCHES_WITHIN].map(|off| from - ray * off);
             has || places.iter().all(|at| has_room(view, *at))
         };
-        let room = |at| OrderReason::ClearsArea { room: defence::room_along(view, from, at) };
+        let room = |at| OrderReason::ClearsArea { room: view.room_along(from, at) };
         let Some(best) = clear::clearance(view, kicks, keeper, from, fits) else {
             let straight = from - keeper.position;
             let rays = (0..TAKEN_FROM).map(|step| {

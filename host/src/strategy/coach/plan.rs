@@ -6,7 +6,7 @@ use rules::{Phase, RuleRole};
 
 use super::super::order::{Order, OrderReason, Role, Task};
 use super::super::view::{ROBOTS_MAX, View, ViewRobot};
-use super::super::{defence, restart, threat};
+use super::super::{defence, off_ball, threat};
 use super::{Free, Orders};
 
 /// Orders so far, and the robots that have none yet.
@@ -95,6 +95,6 @@ impl<'v> Plan<'v> {
 
     /// The place moved off the ball unless that is in play.
     pub(super) fn kept_off(&self, at: Point<Attack>) -> Point<Attack> {
-        if self.view.phase == Phase::Run { at } else { restart::kept_off(self.view, at) }
+        if self.view.phase == Phase::Run { at } else { off_ball::kept_off(self.view, at) }
     }
 }

@@ -6,7 +6,6 @@ use geometry::{Attack, Point, Vector};
 use protocol::RobotId;
 
 use super::{Place, Places, Style, defenders, free_places};
-use crate::strategy::defence::room_along;
 use crate::strategy::order::{OrderReason, Role};
 use crate::strategy::support::{Target, best_shot};
 use crate::strategy::view::{View, ViewBall};
@@ -29,7 +28,7 @@ pub(super) fn shoot_or_clear(view: &View, _robot: RobotId, ball: Point<Attack>) 
     }
     let ahead = |y: f32| {
         let at = view.clamp(Point::new(ball.x() + CLEAR_LENGTH_M, ball.y() * CLEAR_INWARD_SHARE + y), 0.5);
-        (at, room_along(view, ball, at))
+        (at, view.room_along(ball, at))
     };
     let (at, room) = [1.0, -1.0]
         .map(ahead)

@@ -7,7 +7,7 @@ use rules::keep_out::{KeepOut, Situation, keep_out};
 use rules::limits::{OPPONENT_AREA_DISTANCE, ROBOT_RADIUS};
 use rules::{Phase, RuleRole, Side};
 
-use super::super::restart;
+use super::super::off_ball;
 use super::super::view::View;
 use super::ThreatSettings;
 use super::edge::Edge;
@@ -59,7 +59,7 @@ pub fn legal_for(
     };
     let mut place = out(at);
     if view.phase != Phase::Run {
-        place = out(restart::kept_off(view, place));
+        place = out(off_ball::kept_off(view, place));
     }
     let margin = if view.phase == Phase::Run { AREA_MARGIN_IN_PLAY_M } else { AREA_MARGIN_STOPPED_M };
     let rules = forbidden_to(view, rule_role);
