@@ -139,6 +139,11 @@ impl Flight {
         None
     }
 
+    /// How far it rolls where no robot touches it, m.
+    pub(super) fn length(&self) -> f32 {
+        self.steps.last().map_or(0.0, |step| step.distance)
+    }
+
     /// How far it has gone after `time` s, m.
     pub(super) fn gone(&self, time: f32) -> f32 {
         self.steps.iter().find(|step| step.time >= time).map_or(LONGEST_M, |step| step.distance)

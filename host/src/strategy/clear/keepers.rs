@@ -1,5 +1,5 @@
 //! `keepers`: the keeper's clearances: several kicks in each direction, rated by which team is first on the
-//! ball's way, or by where it leaves the field. Attack frame, SI units.
+//! ball's way. Attack frame, SI units.
 
 use geometry::{Attack, Point, Segment, Vector};
 use motion::trajectory::FreeLimits;
@@ -29,8 +29,6 @@ const KICKS: [KickOrder; 8] = [
 const TAKEN_BELOW_M_S: f32 = 3.0;
 /// A team that comes later than the other by this is not first, s: three widths of the comparison.
 const LATER_MAX_S: f32 = 0.9;
-/// A ball that leaves this near their goal line leaves over it, m.
-const ON_LINE_M: f32 = 1e-3;
 
 /// What clearances of the keeper from one place are rated by.
 pub(super) struct KeepersRating<'v> {
@@ -95,9 +93,7 @@ impl<'v> KeepersRating<'v> {
         let ours = flight.first(way, &ours, until);
         let leaves = way.at(way.ends);
         let (at, there) = match (ours, theirs) {
-            // Over their goal line it is a free kick of theirs from here, else from where it leaves.
-            (None, None) if leaves.x() >= half - ON_LINE_M => (leaves, self.lost_at(self.from)),
-            (None, None) => (leaves, self.lost_at(leaves)),
+            (None, None) => (leaves, self.lost_at(self.from)),
             _ => {
                 let had = likely(time_of(theirs) - time_of(ours), SOONER_WIDTH_S);
                 let [ours, theirs] =
@@ -114,10 +110,13 @@ impl<'v> KeepersRating<'v> {
         let start = Segment::new(self.from, way.at(open));
         let mut teammates = self.view.ours.iter().filter(|robot| robot.id != self.who);
         let stopped = teammates.any(|robot| start.distance_to(robot.position) < PASSES_BY_M);
-        let there = if stopped { self.lost_at(self.from) } else { there };
+        // Where no robot comes to it as foreseen it shall stay in the field: else the game stops, and goes on
+        // theirs.
+        let there = if stopped || flight.length() > way.ends { self.lost_at(self.from) } else { there };
         let at = way.at(at.distance(self.from).max(LENGTH_MIN_M));
         Clearance { at, kick, worth: self.release.worth(at, there) }
     }
+
     /// The worth of a ball that is theirs at `at`.
     fn lost_at(&self, at: Point<Attack>) -> f32 {
         self.view.stakes.of_theirs(self.view.field.length * 0.5, at)
