@@ -92,15 +92,14 @@ impl<'v> KeepersRating<'v> {
         };
         let ours = flight.first(way, &ours, until);
         let leaves = way.at(way.ends);
-        let (at, there) = match (ours, theirs) {
-            (None, None) => (leaves, self.lost_at(self.from)),
-            _ => {
-                let had = likely(time_of(theirs) - time_of(ours), SOONER_WIDTH_S);
-                let [ours, theirs] =
-                    [ours, theirs].map(|touch| touch.map_or(leaves, |touch| way.at(touch.distance)));
-                let worth = had * self.view.stakes.of_ours(half, ours) + (1.0 - had) * self.lost_at(theirs);
-                (if had < 0.5 { theirs } else { ours }, worth)
-            }
+        let (at, there) = if ours.is_none() && theirs.is_none() {
+            (leaves, self.lost_at(self.from))
+        } else {
+            let had = likely(time_of(theirs) - time_of(ours), SOONER_WIDTH_S);
+            let [ours, theirs] =
+                [ours, theirs].map(|touch| touch.map_or(leaves, |touch| way.at(touch.distance)));
+            let worth = had * self.view.stakes.of_ours(half, ours) + (1.0 - had) * self.lost_at(theirs);
+            (if had < 0.5 { theirs } else { ours }, worth)
         };
         // Our own bodies before the robot stop it.
         let open = match kick {
