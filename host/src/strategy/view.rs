@@ -339,7 +339,7 @@ impl View {
         nearest(self.theirs.iter(), point)
     }
 
-    /// Distance of the nearest opponent from the path of a ball, m; at most [`ROOM_MAX_M`].
+    /// Distance of the nearest opponent from the path of a ball, m; at most a metre.
     pub fn room_along(&self, from: Point<Attack>, to: Point<Attack>) -> f32 {
         let ray = Segment::new(from, to);
         self.theirs.iter().map(|robot| ray.distance_to(robot.position)).fold(ROOM_MAX_M, f32::min)
