@@ -84,7 +84,7 @@ pub const KEYS: &[Key] = &[
         kind: Kind::Outputs,
         meaning: "which of the board's motor outputs, with its encoder, drives each wheel (boards)",
     },
-    number("wheels.radius", "m", 0.01, 0.06, "radius of a wheel on the carpet (boards)"),
+    number("wheels.radius", "m", 0.01, 0.06, "radius of a wheel on the field surface (boards)"),
     number("wheels.free_speed", "m/s", 0.5, 15.0, "rim speed at full voltage without load"),
     number("wheels.rim_max", "m/s", 0.3, 15.0, "fastest rim that is ordered"),
     number("wheels.encoder_lines", "", 4.0, 100_000.0, "lines of an encoder, each four counts (boards)"),
