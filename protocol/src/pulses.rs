@@ -2,7 +2,7 @@
 //! (protocol/SPEC.md, PulseOrder and PulseReport).
 //!
 //! Payloads in both directions begin with [`KIND`], which is neither a message of robots nor one of hosts:
-//! images that play open none. **An order is live**: it names the robot's start and the clock of its newest
+//! match images open none. **An order is live**: it names the robot's start and the clock of its newest
 //! report, so that no recording arms or fires.
 
 use serde::{Deserialize, Serialize};

@@ -103,7 +103,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn every_pulse_is_fired_once_and_told_with_30_percent_of_the_packets_lost() {
+fn every_pulse_is_fired_and_reported_once_with_30_percent_of_packets_lost() {
     let more = ["--kick", "1500,4500", "--repeat", "2", "--ball", "1", "--json", "--chip"];
     let (output, fired) = played("lossy", true, 0.3, &more);
     let lines: Vec<Value> = text(&output.stdout)
@@ -130,7 +130,7 @@ fn without_a_ball_to_wait_for_it_fires_at_once() {
 }
 
 #[test]
-fn a_refused_pulse_is_told_with_its_reason_and_fails() {
+fn a_refused_pulse_is_reported_with_its_reason_and_fails() {
     let (output, fired) = played("long", true, 0.0, &["--kick", "6000", "--ball", "0"]);
     let stdout = text(&output.stdout);
     assert!(stdout.contains("6000 µs flat: refused: no pulse of this length: 1 to 4500 µs"), "{stdout}");

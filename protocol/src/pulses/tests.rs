@@ -1,4 +1,5 @@
-//! `tests`: of orders of pulses and their reports: their frames, and what others make of them.
+//! `tests`: of orders of pulses and their reports: their frames, and that neither teammates nor a match's
+//! host take them.
 
 use super::*;
 use crate::frame::{OVERHEAD, Refusal, TeamKey, open_report};
@@ -61,7 +62,7 @@ fn orders_with_a_changed_bit_or_to_another_and_reports_are_no_orders() {
 }
 
 #[test]
-fn images_that_play_open_no_order_and_their_host_no_report() {
+fn match_images_open_no_order_and_their_host_no_report() {
     let mut playing = Link::new(TEAM, robot(3), KEY.of_robot(robot(3)), u32::MAX);
     for fire in [None, Some(PULSE)] {
         assert_eq!(playing.open(Instant(0), &order(fire).1), Ok(Received::Elsewhere));

@@ -1,5 +1,5 @@
 //! `kicks`: interlock of raw pulses, by which a kicker is measured: between the host's orders to a bring-up
-//! image and 200 V. Sans-IO; no image that plays has it.
+//! image and 200 V. Sans-IO; no match image has it.
 //!
 //! | order | kicker | result |
 //! |---|---|---|
@@ -104,13 +104,18 @@ impl Kicks {
 
     fn judge(&self, now: Instant, pulse: Pulse) -> Result<(), PulseRefusal> {
         let (longest, volts) = (pulse_max(pulse.chip), self.state.volts);
-        match self.fired {
-            _ if self.armed.is_none() => Err(PulseRefusal::Disarmed),
-            _ if !self.is_armed(now) => Err(PulseRefusal::Expired),
-            _ if !(1..=longest).contains(&pulse.micros) => Err(PulseRefusal::Length(longest)),
-            Some(fired) if now.since(fired) < KICK_PAUSE => Err(PulseRefusal::TooSoon),
-            _ if volts.is_nan() || volts < FULL_VOLTS => Err(PulseRefusal::NotCharged(volts)),
-            _ => Ok(()),
+        if self.armed.is_none() {
+            Err(PulseRefusal::Disarmed)
+        } else if !self.is_armed(now) {
+            Err(PulseRefusal::Expired)
+        } else if !(1..=longest).contains(&pulse.micros) {
+            Err(PulseRefusal::Length(longest))
+        } else if self.fired.is_some_and(|fired| now.since(fired) < KICK_PAUSE) {
+            Err(PulseRefusal::TooSoon)
+        } else if volts.is_nan() || volts < FULL_VOLTS {
+            Err(PulseRefusal::NotCharged(volts))
+        } else {
+            Ok(())
         }
     }
 }
@@ -124,9 +129,8 @@ fn millis(now: Instant) -> u32 {
 const ARMED_FOR: Duration = Duration::millis(2_000);
 /// Silence of the host that disarms: ten of its orders.
 const SILENCE_MAX: Duration = Duration::millis(500);
-/// Greatest time from a report to the order that names it, ms, as of commands in play
-/// ([`protocol::host_clock::AGE_MAX`]).
-const ORDER_AGE_MAX: u32 = 200;
+/// Greatest time from a report to the order that names it, ms: as of commands in play.
+const ORDER_AGE_MAX: u32 = (protocol::host_clock::AGE_MAX.0 / 1_000) as u32;
 /// Time from the end of a pulse to the reading of the voltage: the coil's current has gone out, and twenty
 /// readings were taken since (estimate).
 const SETTLE_TIME: Duration = Duration::millis(20);

@@ -10,7 +10,7 @@ use protocol::pulses::{Fired, Pulse, PulseOrder, PulseRefusal, PulseReport};
 /// Which pulses.
 #[derive(Debug, Args)]
 pub(super) struct KickOptions {
-    /// Instead of the checks fire raw pulses of these lengths, µs, to measure the kicker.
+    /// Instead of the checks, fire raw pulses of these lengths, µs, to measure the kicker.
     #[arg(long, value_name = "US,…", value_delimiter = ',', requires = "robot", value_parser = clap::value_parser!(u16).range(1..=6_000))]
     kick: Vec<u16>,
     /// Through the chip kicker's coil, not the flat one's.
