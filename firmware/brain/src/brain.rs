@@ -183,7 +183,7 @@ impl<'a> Brain<'a> {
         // Teammates' messages to the host are not for this robot.
         let TeamMessage::Beacon(beacon) = message else { return };
         self.timers.advance(now);
-        // A cycle of which this beacon is its proposer's first may be older than this boot epoch.
+        // Before the first beacon of its proposer a cycle may be older than this boot epoch.
         let from_start = self.awake
             && beacon.cycle.as_ref().is_some_and(|state| self.teammates.has_received(state.id.proposer));
         self.teammates.receive(now, from, beacon);

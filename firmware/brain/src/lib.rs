@@ -3,10 +3,9 @@
 //!
 //! Four kinds of methods, as on [`Brain`]: getters; `handle_*(now, …)` for inputs; `poll_*` for outputs, to
 //! be drained after every `handle_*`; no commands besides. Bottom up: [`timer`] (every deadline), [`belief`]
-//! and [`teammates`] (what it knows), [`body`], [`skills`]
-//! and [`abilities`] (what it can do), [`actuation`] (how it moves), [`reactive`] (what it does by
-//! itself), [`execution`] (its part of a case), [`team`] (the cycle), [`Brain`] (the order of these within a
-//! step), [`Station`] (brain with radio).
+//! and [`teammates`] (what it knows), [`body`], [`skills`] and [`abilities`] (what it can do), [`actuation`]
+//! (how it moves), [`reactive`] (what it does by itself), [`execution`] (its part of a case), [`team`] (the
+//! cycle), [`Brain`] (the order of these within a step), [`Station`] (brain with radio).
 //!
 //! Where a host leads (wheels): [`snapshot`] and [`hosted`] (what it sends), [`directive`] (the skill that
 //! carries it out), [`governor`] (what of it reaches the motors).

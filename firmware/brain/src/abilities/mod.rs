@@ -37,7 +37,7 @@ pub trait Abilities: Sync {
     fn shoot(&self, belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent;
 
     /// A case's shot at goal along the leg that ends at `leg.1`, with its kick `leg.0`, and the rule that
-    /// chose it, which only legged robots tell; `patient` while there is time left. `None` where there is
+    /// chose it, which only legged robots report; `patient` while there is time left. `None` where there is
     /// none, and no shot worth making.
     fn shoot_leg(
         &self,

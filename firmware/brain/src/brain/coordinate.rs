@@ -20,7 +20,8 @@ use rules::Phase;
 impl Brain<'_> {
     /// Adopts a newer state that this robot made, and sets its own part accordingly.
     pub(super) fn adopt_own(&mut self, now: Instant, state: &CycleState) {
-        self.adopt(now, state, self.awake);
+        // Nothing is decided, proposed or aborted before the robot is awake.
+        self.adopt(now, state, true);
     }
 
     /// Adopts a newer state; `from_start`: its cycle began in this boot epoch of this robot.

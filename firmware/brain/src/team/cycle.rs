@@ -63,7 +63,7 @@ impl Cycle {
         !self.may_be_older && self.state.as_ref().is_some_and(|s| s.coordinator == self.me)
     }
 
-    /// Whether an earlier boot epoch of this robot took part in the running gameplay.
+    /// Whether an earlier boot epoch of this robot may have taken part in the running gameplay.
     pub fn is_of_an_earlier_epoch(&self) -> bool {
         self.may_be_older
     }
