@@ -139,7 +139,7 @@ impl Flight {
         None
     }
 
-    /// How far it rolls where no robot touches it, m.
+    /// How far it rolls where no robot touches it, m; no farther than it is followed.
     pub(super) fn length(&self) -> f32 {
         self.steps.last().map_or(0.0, |step| step.distance)
     }
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_is_lost_over_a_line_and_too_fast_for_who_would_keep_it() {
+    fn no_robot_touches_a_ball_that_has_left_nor_keeps_a_fast_one() {
         let aside = (0.0, 1.0);
         assert_eq!(first(KickOrder::Flat(600), (3.5, -2.0), aside, f32::INFINITY), None);
         assert_eq!(first(KickOrder::Flat(600), (0.0, 2.0), aside, 3.0), None);

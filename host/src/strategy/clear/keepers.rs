@@ -13,8 +13,9 @@ use super::super::view::{ROBOTS_MAX, View, ViewRobot};
 use super::first_touch::{FirstTouch, Flight, Touchers, Way};
 use super::{CHIP_RISES_M, Clearance, LENGTH_MIN_M, PASSES_BY_M, Release, SOONER_WIDTH_S};
 
-/// Kicks of a clearance, cm/s: along the ground from one that stops after 3 m to the fastest; chips whose
-/// first hop, v²/g at 45°, is 0.9, 1.6, 2.5 and 3.7 m.
+/// Kicks of a clearance, cm/s: along the ground, of which the slowest stops after 3 m, and chips whose first
+/// hop, v²/g at 45°, is 0.9, 1.6, 2.5 and 3.7 m. The fastest count for the longest ways alone, to the far
+/// corners.
 const KICKS: [KickOrder; 8] = [
     KickOrder::Flat(200),
     KickOrder::Flat(300),
@@ -78,6 +79,28 @@ impl<'v> KeepersRating<'v> {
     }
 
     fn clearance(&self, way: &Way, kick: KickOrder, flight: &Flight) -> Clearance {
+        // Our own bodies before the robot stop it.
+        let c = self.kicks.constants();
+        let open = match kick {
+            KickOrder::Chip(_) => CHIP_RISES_M,
+            KickOrder::Flat(_) => flight.gone(c.shortest_time),
+        };
+        let start = Segment::new(self.from, way.at(open));
+        let mut teammates = self.view.ours.iter().filter(|robot| robot.id != self.who);
+        let stopped = teammates.any(|robot| start.distance_to(robot.position) < PASSES_BY_M);
+        // Where no robot comes to it as foreseen it shall stay in the field, as far as it is followed: else
+        // the game stops, and goes on theirs.
+        let (at, there) = if stopped || flight.length() > way.ends {
+            (way.at(way.ends), self.lost_at(self.from))
+        } else {
+            self.first_touch(way, flight)
+        };
+        let at = way.at(at.distance(self.from).max(LENGTH_MIN_M));
+        Clearance { at, kick, worth: self.release.worth(at, there) }
+    }
+
+    /// Where the ball is touched first, and what that is worth.
+    fn first_touch(&self, way: &Way, flight: &Flight) -> (Point<Attack>, f32) {
         let half = self.view.field.length * 0.5;
         let c = self.kicks.constants();
         let theirs =
@@ -91,29 +114,11 @@ impl<'v> KeepersRating<'v> {
             below: TAKEN_BELOW_M_S,
         };
         let ours = flight.first(way, &ours, until);
-        let leaves = way.at(way.ends);
-        let (at, there) = if ours.is_none() && theirs.is_none() {
-            (leaves, self.lost_at(self.from))
-        } else {
-            let had = likely(time_of(theirs) - time_of(ours), SOONER_WIDTH_S);
-            let [ours, theirs] =
-                [ours, theirs].map(|touch| touch.map_or(leaves, |touch| way.at(touch.distance)));
-            let worth = had * self.view.stakes.of_ours(half, ours) + (1.0 - had) * self.lost_at(theirs);
-            (if had < 0.5 { theirs } else { ours }, worth)
-        };
-        // Our own bodies before the robot stop it.
-        let open = match kick {
-            KickOrder::Chip(_) => CHIP_RISES_M,
-            KickOrder::Flat(_) => flight.gone(c.shortest_time),
-        };
-        let start = Segment::new(self.from, way.at(open));
-        let mut teammates = self.view.ours.iter().filter(|robot| robot.id != self.who);
-        let stopped = teammates.any(|robot| start.distance_to(robot.position) < PASSES_BY_M);
-        // Where no robot comes to it as foreseen it shall stay in the field: else the game stops, and goes on
-        // theirs.
-        let there = if stopped || flight.length() > way.ends { self.lost_at(self.from) } else { there };
-        let at = way.at(at.distance(self.from).max(LENGTH_MIN_M));
-        Clearance { at, kick, worth: self.release.worth(at, there) }
+        let had = likely(time_of(theirs) - time_of(ours), SOONER_WIDTH_S);
+        let rests = way.at(flight.length());
+        let [ours, theirs] = [ours, theirs].map(|touch| touch.map_or(rests, |touch| way.at(touch.distance)));
+        let worth = had * self.view.stakes.of_ours(half, ours) + (1.0 - had) * self.lost_at(theirs);
+        (if had < 0.5 { theirs } else { ours }, worth)
     }
 
     /// The worth of a ball that is theirs at `at`.
