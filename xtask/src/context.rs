@@ -4,6 +4,7 @@
 use std::cell::OnceCell;
 use std::env;
 use std::ffi::OsStr;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
@@ -87,6 +88,47 @@ pub(crate) fn run(command: &mut Command) -> Result<(), Failure> {
     }
 }
 
+/// Runs tests to their end, with this program's standard output and error; what failed is said once more in the
+/// failure, since hundreds of lines may follow it.
+pub(crate) fn run_tests(command: &mut Command) -> Result<(), Failure> {
+    let line = line_of(command);
+    println!("xtask: {line}");
+    let not_started = |error| Failure::Start { line: line.clone(), error };
+    let mut tests = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().map_err(not_started)?;
+    let mut failed = FailedTests::default();
+    if let Some(output) = tests.stdout.take() {
+        for text in BufReader::new(output).split(b'\n').map_while(Result::ok) {
+            let text = String::from_utf8_lossy(&text);
+            println!("{text}");
+            failed.note(&text);
+        }
+    }
+    match tests.wait() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(Failure::Tests { line, status, failed: failed.lines }),
+        Err(error) => Err(not_started(error)),
+    }
+}
+
+/// What a test program prints of its failed tests: from its line `failures:` to its result.
+#[derive(Debug, Default)]
+struct FailedTests {
+    lines: Vec<String>,
+    are_listed: bool,
+}
+
+impl FailedTests {
+    fn note(&mut self, line: &str) {
+        self.are_listed = (self.are_listed || line == "failures:") && !line.starts_with("test result:");
+        if self.are_listed && self.lines.len() < FAILED_LINES_MAX {
+            self.lines.push(line.to_owned());
+        }
+    }
+}
+
+/// Lines that are repeated of failed tests.
+const FAILED_LINES_MAX: usize = 120;
+
 /// Runs a command to its end; its standard output.
 pub(crate) fn output_of(command: &mut Command) -> Result<String, Failure> {
     let line = line_of(command);
@@ -104,6 +146,9 @@ pub(crate) enum Failure {
     /// A command failed; its own output is printed above.
     #[error("`{line}` failed ({status})")]
     Command { line: String, status: ExitStatus },
+    /// Tests failed; `failed` is what they printed of it.
+    #[error("`{line}` failed ({status})\n{}", failed.join("\n"))]
+    Tests { line: String, status: ExitStatus, failed: Vec<String> },
     #[error("`{line}` does not start: {error}")]
     Start { line: String, error: std::io::Error },
     /// A part of the toolchain is missing.
@@ -177,5 +222,16 @@ mod tests {
         assert!(failed.starts_with("`false` failed"), "{failed}");
         let missing = run(&mut Command::new("onetwo-has-no-such-program")).unwrap_err().to_string();
         assert!(missing.contains("does not start"), "{missing}");
+    }
+
+    #[test]
+    fn what_failed_tests_print_is_said_again_with_the_failure() {
+        let printed = "test a ... ok\ntest b ... FAILED\n\nfailures:\n\n---- b stdout ----\nleft: 1\n\ntest result: FAILED.\nmore";
+        let mut command = Command::new("sh");
+        command.args(["-c", &format!("printf '{printed}'; exit 101")]);
+        let failure = run_tests(&mut command).unwrap_err().to_string();
+        assert!(failure.contains("101"), "{failure}");
+        assert!(failure.ends_with("\nfailures:\n\n---- b stdout ----\nleft: 1\n"), "{failure}");
+        run_tests(&mut Command::new("true")).unwrap();
     }
 }

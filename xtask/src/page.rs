@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use std::{env, fs, thread};
 
-use crate::context::{Context, Failure, answers, run};
+use crate::context::{Context, Failure, answers, run, run_tests};
 use crate::cost::write_between;
 
 /// The property checked by the step.
@@ -28,7 +28,7 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
 pub(crate) fn soak(context: &Context) -> Result<(), Failure> {
     ensure_browser()?;
     let tests = "--test halt_cli --test net_cli --test page_browser -- --nocapture --test-threads 1";
-    run(context.cargo(&format!("test --workspace --features onetwo/png {tests}")).env("ONETWO_SOAK", "1"))
+    run_tests(context.cargo(&format!("test --workspace --features onetwo/png {tests}")).env("ONETWO_SOAK", "1"))
 }
 
 /// Takes the documentation's screenshots again.

@@ -6,7 +6,7 @@
 
 use firmware_build::{Board, Install, boards};
 
-use crate::context::{Context, Failure, run};
+use crate::context::{Context, Failure, run, run_tests};
 use crate::{deny, determinism, emulate, first_build, images, page, python, readme, robots};
 
 #[derive(Debug)]
@@ -59,7 +59,7 @@ fn clippy(context: &Context) -> Result<(), Failure> {
 
 fn test(context: &Context) -> Result<(), Failure> {
     // All failures, not only those of the first crate that has one.
-    run(&mut context.cargo("test --workspace --features onetwo/png --no-fail-fast"))
+    run_tests(&mut context.cargo("test --workspace --features onetwo/png --no-fail-fast"))
 }
 
 fn doc(context: &Context) -> Result<(), Failure> {
@@ -102,7 +102,7 @@ fn qemu(context: &Context) -> Result<(), Failure> {
     images::check(context)?;
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
     emulate::on_target(context, &[])?;
-    run(&mut context.cargo("test --release --no-fail-fast -p onetwo -p match-tests --test qemu_*"))
+    run_tests(&mut context.cargo("test --release --no-fail-fast -p onetwo -p match-tests --test qemu_*"))
 }
 
 /// Everything but the upload and the build of what was packed, which takes a debug build of each package;
