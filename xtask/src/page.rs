@@ -28,7 +28,9 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
 pub(crate) fn soak(context: &Context) -> Result<(), Failure> {
     ensure_browser()?;
     let tests = "--test halt_cli --test net_cli --test page_browser -- --nocapture --test-threads 1";
-    run_tests(context.cargo(&format!("test --workspace --features onetwo/png {tests}")).env("ONETWO_SOAK", "1"))
+    run_tests(
+        context.cargo(&format!("test --workspace --features onetwo/png {tests}")).env("ONETWO_SOAK", "1"),
+    )
 }
 
 /// Takes the documentation's screenshots again.
