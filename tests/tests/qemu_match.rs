@@ -8,7 +8,8 @@
 use firmware_build::inspect::{STACK_BUDGET, STEP_BUDGET};
 use match_tests::hil::Pair;
 
-/// Default length in simulated seconds: the worst steps come in stops and restarts, the first after half a minute.
+/// Default length in simulated seconds: the worst steps come in stops and restarts, the first after half a
+/// minute.
 const SECONDS: f64 = 60.0;
 
 #[test]

@@ -88,13 +88,15 @@ pub(crate) fn run(command: &mut Command) -> Result<(), Failure> {
     }
 }
 
-/// Runs tests to their end, with this program's standard output and error; what failed is said once more in the
-/// failure, since hundreds of lines may follow it.
+/// Runs tests to their end, with this program's standard output and error; what failed is said once more in
+/// the failure, since hundreds of lines may follow it.
 pub(crate) fn run_tests(command: &mut Command) -> Result<(), Failure> {
     let line = line_of(command);
     println!("xtask: {line}");
-    let not_started = |error| Failure::Start { line: line.clone(), error };
-    let mut tests = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().map_err(not_started)?;
+    let mut tests = match command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn() {
+        Ok(tests) => tests,
+        Err(error) => return Err(Failure::Start { line, error }),
+    };
     let mut failed = FailedTests::default();
     if let Some(output) = tests.stdout.take() {
         for text in BufReader::new(output).split(b'\n').map_while(Result::ok) {
@@ -106,7 +108,7 @@ pub(crate) fn run_tests(command: &mut Command) -> Result<(), Failure> {
     match tests.wait() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(Failure::Tests { line, status, failed: failed.lines }),
-        Err(error) => Err(not_started(error)),
+        Err(error) => Err(Failure::Start { line, error }),
     }
 }
 

@@ -330,14 +330,16 @@ impl<'a> Brain<'a> {
 }
 
 /// Instructions of a packet, and of the frame in it where it is for this robot: opened, and what follows from
-/// it. By least squares over 27,249 steps of six images in a match of 60 s (`qemu_match`): a packet to others
-/// took 923, a beacon 2,493, a command 2,367, a part of a snapshot 4,175.
-const EFFORT_OF_PACKET: u32 = 925;
-const EFFORT_OF_FRAME: u32 = 1_570;
+/// it. Under QEMU, by two to eleven more packets in a step, with the protocol compiled for speed: a command
+/// to another robot took 590, a beacon 1,340, a forged snapshot of 120 B 2,080. Compiled for size, by least
+/// squares over 27,249 steps of six images in a match of 60 s, they take 923, 2,493 and 4,175; `EFFORT` of
+/// `drivetrain` leaves room for that.
+const EFFORT_OF_PACKET: u32 = 590;
+const EFFORT_OF_FRAME: u32 = 760;
 /// The same of a command: it is as long as a beacon, and all of it is covered by the tag.
-const EFFORT_OF_COMMAND: u32 = 1_450;
+const EFFORT_OF_COMMAND: u32 = 900;
 /// The same of a part of a snapshot, the longest frame.
-const EFFORT_OF_SNAPSHOT: u32 = 3_250;
+const EFFORT_OF_SNAPSHOT: u32 = 1_500;
 /// Instructions of a packet that is left unopened: most of them are for handing it over.
 const EFFORT_OF_UNOPENED: u32 = 510;
 /// Instructions of a beacon that is made and sealed: by least squares over 27,249 steps of six images, 1,832.
@@ -347,13 +349,13 @@ const HOST_INPUTS: u32 = 3 * EFFORT_OF_PACKET + 2 * EFFORT_OF_SNAPSHOT + EFFORT_
 /// Instructions of a gameplay that starts or ends.
 const EFFORT_OF_GAMEPLAY: u32 = 7_000;
 /// Instructions that inputs of a short step take where it plans, to within a packet: both parts of a
-/// snapshot, a command and two teammates' beacons, and a packet for others between them.
-const INPUTS_OF_PLAN_MAX: u32 = 17_000;
+/// snapshot, a command and two teammates' beacons, and packets for others between them.
+const INPUTS_OF_PLAN_MAX: u32 = 10_500;
 /// The same of a plan that tests the straight path only.
-const INPUTS_OF_LEAST_PLAN_MAX: u32 = 21_000;
+const INPUTS_OF_LEAST_PLAN_MAX: u32 = 13_500;
 /// Instructions of inputs after which no other packet is opened, from any sender: a step that opens as many
 /// reuses its path.
-const INPUTS_MAX: u32 = 26_000;
+const INPUTS_MAX: u32 = 18_000;
 /// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual
 /// beacons between them, twice. Each step that plans adds one again.
 const PATH_REUSES_MAX: u8 = 10;

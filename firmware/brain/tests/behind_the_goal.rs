@@ -19,8 +19,8 @@ fn last_second(phase: Phase<Side>, from: Point<Field>, to: Point<Field>) -> Vec<
     let ball = League::DivisionA.field().penalty_spot(own);
     belief.ball = Some(BelievedBall { position: ball, velocity: Vector::default(), rest: ball });
     let mut drivetrain = Drivetrain::default();
-    // Four frames, by the estimates of `brain`: as many as a host that shows two teams sends, and a teammate's.
-    drivetrain.set_spent(13_220);
+    // Four frames: as many as a host that shows two teams sends, and a teammate's.
+    drivetrain.set_spent(7_800);
     let mut places = Vec::new();
     for step in 0..1000 {
         let drive = Drive::bold(to, Angle::HALF_TURN);

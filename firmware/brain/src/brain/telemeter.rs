@@ -142,10 +142,12 @@ impl Brain<'_> {
         let condition = condition.into_iter().fold(Condition::default(), set);
         // One message a step: sealing costs time, and the next step comes soon.
         let spoke_now = spoken.beacon == Some(now);
-        let has_news = |(last, reported): (Instant, Condition)| {
-            (reported != condition || spoken.new_host) && now.since(last) >= TELEMETRY_LEAST
-        };
-        let due = !spoke_now && (spoken.is_silent_for_long(now) || spoken.telemetry.is_some_and(has_news));
+        let due = !spoke_now
+            && (spoken.is_silent_for_long(now)
+                || spoken.telemetry.is_some_and(|(last, reported)| {
+                    let changed = reported != condition || spoken.new_host;
+                    changed && now.since(last) >= TELEMETRY_LEAST
+                }));
         if !due {
             return None;
         }
