@@ -125,9 +125,7 @@ impl HostSnapshot {
         if u16::from(self.parts) == whole {
             // A robot that is in no part of a whole snapshot is not on the field.
             for slot in self.robots.iter_mut().flatten() {
-                if slot.as_ref().is_some_and(|robot| robot.snapshot != part.snapshot) {
-                    *slot = None;
-                }
+                *slot = slot.filter(|robot| robot.snapshot == part.snapshot);
             }
         }
         taken
