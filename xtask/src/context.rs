@@ -88,8 +88,8 @@ pub(crate) fn run(command: &mut Command) -> Result<(), Failure> {
     }
 }
 
-/// Runs tests to their end, with this program's standard output and error; what failed is said once more in
-/// the failure, since hundreds of lines may follow it.
+/// Runs tests to their end, with this program's standard output and error; the failure repeats what failed
+/// tests printed, since hundreds of lines may follow it.
 pub(crate) fn run_tests(command: &mut Command) -> Result<(), Failure> {
     let line = line_of(command);
     println!("xtask: {line}");
@@ -112,7 +112,7 @@ pub(crate) fn run_tests(command: &mut Command) -> Result<(), Failure> {
     }
 }
 
-/// What a test program prints of its failed tests: from its line `failures:` to its result.
+/// What test programs print of their failed tests: every name, and from `failures:` to the result.
 #[derive(Debug, Default)]
 struct FailedTests {
     lines: Vec<String>,
@@ -122,13 +122,14 @@ struct FailedTests {
 impl FailedTests {
     fn note(&mut self, line: &str) {
         self.are_listed = (self.are_listed || line == "failures:") && !line.starts_with("test result:");
-        if self.are_listed && self.lines.len() < FAILED_LINES_MAX {
+        let is_listed = self.are_listed && self.lines.len() < FAILED_LINES_MAX;
+        if is_listed || line.ends_with("... FAILED") {
             self.lines.push(line.to_owned());
         }
     }
 }
 
-/// Lines that are repeated of failed tests.
+/// Most lines that are repeated of failed tests, besides their names: a screen or two.
 const FAILED_LINES_MAX: usize = 120;
 
 /// Runs a command to its end; its standard output.
@@ -227,13 +228,16 @@ mod tests {
     }
 
     #[test]
-    fn what_failed_tests_print_is_said_again_with_the_failure() {
+    fn a_failure_repeats_what_failed_tests_printed() {
         let printed = "test a ... ok\ntest b ... FAILED\n\nfailures:\n\n---- b stdout ----\nleft: 1\n\ntest result: FAILED.\nmore";
         let mut command = Command::new("sh");
         command.args(["-c", &format!("printf '{printed}'; exit 101")]);
         let failure = run_tests(&mut command).unwrap_err().to_string();
         assert!(failure.contains("101"), "{failure}");
-        assert!(failure.ends_with("\nfailures:\n\n---- b stdout ----\nleft: 1\n"), "{failure}");
+        assert!(
+            failure.ends_with("\ntest b ... FAILED\nfailures:\n\n---- b stdout ----\nleft: 1\n"),
+            "{failure}"
+        );
         run_tests(&mut Command::new("true")).unwrap();
     }
 }
