@@ -2,14 +2,15 @@
 //! and referee around them are the same; the match's hash is compared after every tick (docs/architecture.md
 //! §2.5, §7.2).
 //!
-//! `ONETWO_MATCH_SECONDS=60 cargo test --release -p match-tests --test qemu_match` plays
+//! `ONETWO_MATCH_SECONDS=600 cargo test --release -p match-tests --test qemu_match` plays
 //! longer. Needs QEMU and a compiler for the target.
 
 use firmware_build::inspect::{STACK_BUDGET, STEP_BUDGET};
 use match_tests::hil::Pair;
 
-/// Default length in simulated seconds: kick-off and the first duels.
-const SECONDS: f64 = 4.0;
+/// Default length in simulated seconds: the worst steps come in stops and restarts, the first after half a
+/// minute.
+const SECONDS: f64 = 60.0;
 
 #[test]
 fn six_images_in_lockstep_play_the_match_that_six_native_brains_play() {

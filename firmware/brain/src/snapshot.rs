@@ -125,7 +125,9 @@ impl HostSnapshot {
         if u16::from(self.parts) == whole {
             // A robot that is in no part of a whole snapshot is not on the field.
             for slot in self.robots.iter_mut().flatten() {
-                *slot = slot.filter(|robot| robot.snapshot == part.snapshot);
+                if slot.as_ref().is_some_and(|robot| robot.snapshot != part.snapshot) {
+                    *slot = None;
+                }
             }
         }
         taken

@@ -222,7 +222,9 @@ impl Drivetrain {
             effort,
         };
         let path = avoid::plan(&course, &mut self.carried);
-        if self.carried.is_searching() && matches!(path.verdict, RouteVerdict::Blocked { .. }) {
+        // An escape of half a search may lead back to where the step before came from.
+        let is_blocked = matches!(path.verdict, RouteVerdict::Blocked { .. } | RouteVerdict::Escape { .. });
+        if self.carried.is_searching() && is_blocked {
             self.path_age = path_age;
             if let Some(known) = under_way.filter(|known| known.has_way() && path_age < PATH_AGE_MAX) {
                 return self.keep_path(belief, step, CurrentPath { drive: *drive, ..known });
@@ -248,7 +250,7 @@ impl Drivetrain {
         let stopped = is_moved_by_the_rules(belief.game.phase);
         let skill = match belief.game.phase {
             Phase::BallPlacement(Side::Ours) => EFFORT_OF_SKILL,
-            _ if stopped && belief.game.rule_role != RuleRole::Kicker => 0,
+            _ if stopped && belief.game.rule_role != RuleRole::Kicker => EFFORT_OF_REGIONS,
             _ => EFFORT_OF_SKILL,
         };
         EFFORT.saturating_sub(skill + drive.effort + self.spent)
@@ -306,15 +308,16 @@ const PATH_AGE_MAX: u8 = 20;
 /// Number of steps for which a robot that loses its sideways speed keeps its velocity, where it has no time
 /// to plan.
 const COASTS_MAX: u8 = 2;
-/// Instructions that a step leaves for inputs, a skill and planning a path: 40,000 (docs/architecture.md §9)
-/// less what every step takes, a message sent, and what estimates err by. By 60 s of six images the worst
-/// step took 37,693. With 19,000, worst 35,747, 14 of 612 keepers come late from behind their goal (a test of
-/// `brain`).
+/// Instructions that a step leaves for inputs, its message, a skill and planning a path: 40,000
+/// (docs/architecture.md §9) less what every step takes and what estimates err by. In ten matches of 60 s of
+/// six images (seeds 1 to 10) the worst steps took 36,678 to 40,160.
 const EFFORT: u32 = 21_000;
 /// Instructions that a plan among obstacles has besides the least, for a search.
 const EFFORT_OF_SEARCH: u32 = 1_500;
 /// Instructions of a skill, such as placing the ball or a kick: it also plans a path behind the ball.
 const EFFORT_OF_SKILL: u32 = 4_000;
+/// Instructions of a stopped game's regions, which are around every robot: …
+const EFFORT_OF_REGIONS: u32 = 3_000;
 
 /// Whether the allowed positions of a robot change in this phase without a new directive: with the ball, or
 /// with the phase itself.

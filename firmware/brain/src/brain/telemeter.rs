@@ -55,6 +55,11 @@ impl Spoken {
         self.new_host = true;
     }
 
+    /// Telemetry is due, whether or not something has changed.
+    pub(super) fn is_silent_for_long(&self, now: Instant) -> bool {
+        self.telemetry.is_none_or(|(last, _)| now.since(last) >= TELEMETRY_PERIOD)
+    }
+
     pub(super) fn beacon(&mut self, now: Instant) {
         self.beacon = Some(now);
     }
@@ -138,11 +143,11 @@ impl Brain<'_> {
         // One message a step: sealing costs time, and the next step comes soon.
         let spoke_now = spoken.beacon == Some(now);
         let due = !spoke_now
-            && spoken.telemetry.is_none_or(|(last, reported)| {
-                let since = now.since(last);
-                let changed = reported != condition || spoken.new_host;
-                since >= TELEMETRY_PERIOD || (changed && since >= TELEMETRY_LEAST)
-            });
+            && (spoken.is_silent_for_long(now)
+                || spoken.telemetry.is_some_and(|(last, reported)| {
+                    let changed = reported != condition || spoken.new_host;
+                    changed && now.since(last) >= TELEMETRY_LEAST
+                }));
         if !due {
             return None;
         }
