@@ -1,12 +1,14 @@
 //! `hidden`: position of a ball that no camera sees: under a robot, or where it was placed; field frame, SI.
 //!
 //! With one of our robots, it is at the robot whose sensor detects it, and after release where that robot
-//! detected it last; with theirs, at the one whose front was at it when it vanished. Tracking leaves a ball
-//! that vanished at a robot's front there; where that robot is ours and its sensor does not detect the ball,
-//! the opponent beside it has taken it, or it lies where it was last seen. At a restart after a placement it
-//! lies where it was placed: the robot that brought it there hid it on the path, and the last visible place
-//! is metres off. Else it lies at its stop position. Without this a robot that must keep off the ball would
-//! approach it as soon as it is hidden, and one that backs off a ball it hides would search it elsewhere.
+//! detected it last; of several such robots at the nearest, and at none that it cannot have reached: a stuck
+//! sensor on the other side of the field does not move it there. With theirs, at the one whose front was at
+//! it when it vanished. Tracking leaves a ball that vanished at a robot's front there; where that robot is
+//! ours and its sensor does not detect the ball, the opponent beside it has taken it, or it lies where it
+//! was last seen. At a restart after a placement it lies where it was placed: the robot that brought it
+//! there hid it on the path, and the last visible place is metres off. Else it lies at its stop position.
+//! Without this a robot that must keep off the ball would approach it as soon as it is hidden, and one that
+//! backs off a ball it hides would search it elsewhere.
 
 use geometry::{Field, Point, Vector};
 use protocol::{Duration, Instant, RobotId, Who};
@@ -23,6 +25,8 @@ const HIDES_WITHIN_M: f32 = 0.06;
 const SENSOR_DECIDES_AFTER: Duration = Duration::millis(300);
 /// An opponent's front is this near a ball that it takes off ours, m: a robot's diameter.
 const TAKES_WITHIN_M: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
+/// No ball moves faster, m/s: the rules' limit of a kick, 6.5 m/s, and 0.5 m/s by which kickers err.
+const BALL_SPEED_MAX_M_S: f32 = 7.0;
 
 /// The ball's last visible state, and its placement.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,7 +66,7 @@ impl HiddenBall {
             self.by = self.by.or_else(|| self.taken_by(world, us));
             world.ball = None;
         }
-        let holder = world.ours(us).find(|robot| feels(robot.who.id) == Some(true));
+        let holder = self.holder(now, world.ours(us).filter(|robot| feels(robot.who.id) == Some(true)));
         if let (Some(robot), Some(last)) = (holder, &mut self.last) {
             // Where it lies if it is released: a ball released at speed is soon visible.
             (last.position, last.velocity) = (dribbler_point(robot), Vector::default());
@@ -80,6 +84,15 @@ impl HiddenBall {
         };
         let seen = self.last.map_or(now, |last| last.seen);
         world.ball = Some(Ball { velocity, confidence: 0.0, ..Ball::at_rest(position, seen) });
+    }
+
+    /// Of our robots whose sensors detect the ball, the one nearest to where it was last, if the ball can have
+    /// come there since it was seen.
+    fn holder<'a>(&self, now: Instant, feeling: impl Iterator<Item = &'a Robot>) -> Option<&'a Robot> {
+        let last = self.last?;
+        let reach = TAKES_WITHIN_M + BALL_SPEED_MAX_M_S * now.since(last.seen).as_secs_f32();
+        let off = |robot: &Robot| dribbler_point(robot).distance(last.position);
+        feeling.filter(|robot| off(robot) < reach).min_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
     /// The opponent that has taken a ball which vanished between it and one of ours: whose front is nearest
@@ -129,7 +142,7 @@ mod tests {
         let placement = matches!(phase, Phase::BallPlacement(_)).then(|| Point::new(-4.0, 0.0));
         let mut game = Game::default();
         (game.phase, game.placement) = (phase, placement);
-        hidden.fill(Instant(1), &mut world, Colour::Yellow, &game, feels);
+        hidden.fill(Instant(1_000_000), &mut world, Colour::Yellow, &game, feels);
         world.ball.map(|ball| ball.position.x())
     }
 
@@ -151,6 +164,26 @@ mod tests {
         x_of(&mut hidden, &world, Phase::Run, NO_ROBOT);
         world.ball = None;
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(2.09));
+    }
+
+    #[test]
+    fn of_two_robots_that_feel_it_the_one_near_it_holds_it_and_none_out_of_its_reach() {
+        let (mut hidden, mut world) = (HiddenBall::default(), World::default());
+        let numbered = |id| Who::yellow(RobotId::new(id).unwrap());
+        world.put(robot(numbered(0), -4.0));
+        world.put(robot(numbered(1), 1.9));
+        world.ball = Some(ball(2.0));
+        let mut at = |ms: u64, world: &World, feels: fn(RobotId) -> Option<bool>| {
+            let mut world = world.clone();
+            hidden.fill(Instant(ms * 1000), &mut world, Colour::Yellow, &Game::default(), feels);
+            (world.ball.unwrap().position.x() * 1000.0).round()
+        };
+        assert_eq!(at(0, &world, NO_ROBOT), 2000.0);
+        world.ball = None;
+        assert_eq!(at(400, &world, |_| Some(true)), 1990.0);
+        let stuck: fn(RobotId) -> Option<bool> = |id| Some(id == RobotId::ZERO);
+        assert_eq!(at(500, &world, stuck), 1990.0, "5.9 m in 0.5 s: no ball");
+        assert_eq!(at(1000, &world, stuck), -3910.0, "it may have rolled there unseen");
     }
 
     #[test]
