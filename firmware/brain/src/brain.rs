@@ -136,7 +136,7 @@ impl<'a> Brain<'a> {
         let needs_snapshot = self.host.as_ref().is_some_and(|host| host.needs_snapshot(now));
         let takes = match kind {
             PacketKind::Command => effort < INPUTS_MAX,
-            PacketKind::Snapshot => (!must_plan || needs_snapshot) && effort < INPUTS_MAX,
+            PacketKind::Snapshot => (!must_plan || needs_snapshot) && effort < INPUTS_OF_SNAPSHOT_MAX,
             PacketKind::Beacon => {
                 let gameplay = if gameplay_changed { 0 } else { EFFORT_OF_GAMEPLAY };
                 let most = if must_plan { INPUTS_OF_PLAN_MAX } else { INPUTS_MAX - gameplay };
@@ -150,7 +150,7 @@ impl<'a> Brain<'a> {
             self.unopened = self.unopened.saturating_add(1);
             // What a step that has to plan leaves to the next ones is no flood.
             if !must_plan || kind == PacketKind::Command {
-                self.spoken.leave_unopened(now, kind == PacketKind::Beacon);
+                self.spoken.leave_unopened(now, kind != PacketKind::Command);
             }
         }
         takes
@@ -353,6 +353,10 @@ const EFFORT_OF_GAMEPLAY: u32 = 7_000;
 const INPUTS_OF_PLAN_MAX: u32 = 10_500;
 /// The same of a plan that tests the straight path only.
 const INPUTS_OF_LEAST_PLAN_MAX: u32 = 13_500;
+/// The same after which no part of a snapshot is opened: one whole snapshot, a command and two teammates'
+/// beacons are below it. Where the referee's phase changes the host may send two snapshots in a step, and the
+/// third one comes 10 ms later: opened, both took 40,160 instructions.
+const INPUTS_OF_SNAPSHOT_MAX: u32 = 8_300;
 /// Instructions of inputs after which no other packet is opened, from any sender: a step that opens as many
 /// reuses its path.
 const INPUTS_MAX: u32 = 18_000;

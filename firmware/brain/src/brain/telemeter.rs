@@ -64,10 +64,11 @@ impl Spoken {
         self.beacon = Some(now);
     }
 
-    /// A packet was left unopened: a flood, unless it is a beacon and no more came than a team sends.
-    pub(super) fn leave_unopened(&mut self, now: Instant, is_beacon: bool) {
-        self.unopened = self.unopened.saturating_add(u8::from(is_beacon));
-        if !is_beacon || self.unopened > BEACONS_AT_ONCE {
+    /// A packet was left unopened: a flood, unless it is a beacon or a part of a snapshot, and no more came
+    /// than a team sends.
+    pub(super) fn leave_unopened(&mut self, now: Instant, is_usual: bool) {
+        self.unopened = self.unopened.saturating_add(u8::from(is_usual));
+        if !is_usual || self.unopened > BEACONS_AT_ONCE {
             self.flooded = Some(now);
         }
     }

@@ -86,13 +86,16 @@ impl HiddenBall {
         world.ball = Some(Ball { velocity, confidence: 0.0, ..Ball::at_rest(position, seen) });
     }
 
-    /// Of our robots whose sensors detect the ball, the one nearest to where it was last, if the ball can have
-    /// come there since it was seen.
+    /// Of our robots whose sensors detect the ball, the one nearest to where it was last, if the ball can
+    /// have come there since it was seen.
     fn holder<'a>(&self, now: Instant, feeling: impl Iterator<Item = &'a Robot>) -> Option<&'a Robot> {
         let last = self.last?;
         let reach = TAKES_WITHIN_M + BALL_SPEED_MAX_M_S * now.since(last.seen).as_secs_f32();
-        let off = |robot: &Robot| dribbler_point(robot).distance(last.position);
-        feeling.filter(|robot| off(robot) < reach).min_by(|a, b| off(a).total_cmp(&off(b)))
+        feeling
+            .map(|robot| (dribbler_point(robot).distance(last.position), robot))
+            .filter(|(off, _)| *off < reach)
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, robot)| robot)
     }
 
     /// The opponent that has taken a ball which vanished between it and one of ours: whose front is nearest
