@@ -264,8 +264,10 @@ fn in_stop_placements_and_free_kicks_it_leaves_too_the_keeper_as_well() {
 
 #[test]
 fn others_that_stand_about_close_no_way_out() {
-    // Two keepers of 2013 do not get past three robots that stand close before their goal opening of 0.7 m.
-    alone(&prepared().chain(stopped()).collect::<Vec<_>>(), starts(15), 11, 2);
+    // Keepers of 2013 do not get past three robots that stand close before their goal opening of 0.7 m, and
+    // one swings between two ways beside its post: 9 to 11 of 28,080 drives, by whatever a plan may take.
+    // Of an eighth of them 1 to 3 are by chance: the share that is allowed is asked of all.
+    alone(&prepared().chain(stopped()).collect::<Vec<_>>(), starts(120), 11, 16);
 }
 
 #[test]
