@@ -94,6 +94,14 @@ fn held_task(threat: &FirstLevel, memory: &Memory) -> Option<Kept> {
     (!memory.primaries.contains(&Some(kept.robot))).then_some(*kept)
 }
 
+/// Whether two robots stand in each other's way to these places: the other way round their paths are shorter
+/// in all, by more than noise.
+fn crosses(a: &ViewRobot, b: &ViewRobot, [to_a, to_b]: [Point<Attack>; 2]) -> bool {
+    let now = a.position.distance(to_a) + b.position.distance(to_b);
+    let swapped = a.position.distance(to_b) + b.position.distance(to_a);
+    swapped + PASSED_BY_M < now
+}
+
 /// Places being assigned, and robots that have none yet.
 struct Giving<'v> {
     view: &'v View,
@@ -126,12 +134,18 @@ impl Giving<'_> {
             [lower, upper] => self.pair([lower, upper], before),
             [place] => {
                 let guard = self.nearest(place, before[0], worth);
-                let guard = guard.map(|robot| Primary { robot: robot.id, place, needed: true });
                 // The spare one may be away along the edge to guard a second-level threat, so it is held
                 // longer.
-                let place = cover.spare_place(&self.edge, self.settings);
-                let spare = self.nearest(place, before[1], 2.0 * worth);
-                let spare = spare.map(|robot| Primary { robot: robot.id, place, needed: false });
+                let beside = cover.spare_place(&self.edge, self.settings);
+                let spare = self.nearest(beside, before[1], 2.0 * worth);
+                let (guard, spare) = match (guard, spare) {
+                    (Some(guard), Some(spare)) if crosses(&guard, &spare, [place, beside]) => {
+                        (Some(spare), Some(guard))
+                    }
+                    pair => pair,
+                };
+                let guard = guard.map(|robot| Primary { robot: robot.id, place, needed: true });
+                let spare = spare.map(|robot| Primary { robot: robot.id, place: beside, needed: false });
                 guard.into_iter().chain(spare).collect()
             }
             _ => heapless::Vec::new(),

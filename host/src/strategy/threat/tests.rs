@@ -204,3 +204,20 @@ fn at_their_free_kick_places_keep_off_the_ball() {
         assert!(assignment.at.distance(ball) > 0.59, "{assignment:?}");
     }
 }
+
+#[test]
+fn a_wall_of_two_is_not_formed_by_paths_that_cross() {
+    let settings = ThreatSettings::default();
+    let ours = [(-4.4, 0.0), (-3.3, 0.3), (-3.3, -0.3)];
+    let mut scene = view((-2.8, 0.6), &ours, &[(4.4, 0.0), (-2.7, 0.6)]);
+    let mut memory = Memory::default();
+    let before = defend(&scene, all_robots(&scene), &mut memory, &settings);
+    let place = |defence: &Defence, n: u8| defence.assignments.iter().find(|a| a.robot == id(n)).unwrap().at;
+    assert!(before.assignments.iter().any(|a| a.guards == Guards::Spare), "{before:?}");
+    // Each where the other has to be: both have their tasks from before.
+    let places = [place(&before, 1), place(&before, 2)];
+    (scene.ours[1].position, scene.ours[2].position) = (places[1], places[0]);
+    let after = defend(&scene, all_robots(&scene), &mut memory, &settings);
+    let paths: f32 = (1..3).map(|n| scene.ours[n].position.distance(place(&after, n as u8))).sum();
+    assert!(places[0].distance(places[1]) > 0.15 && paths < 0.05, "{paths} m: {after:?}");
+}
