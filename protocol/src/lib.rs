@@ -9,8 +9,8 @@
 //! simulator and computer, [`provision`] is a robot's identity in its flash and [`network_page`] its place in
 //! an IP network, [`slot`] is where a computer finds a case table that was not built into it, [`journal`]
 //! keeps what a brain took in and gave out, [`bring_up`] is what a robot reports of its first start,
-//! [`pulses`] how its kicker is measured then, [`version`] what it runs. The bytes are written down in
-//! `protocol/SPEC.md`, and tests hold the code to them.
+//! [`pulses`] how its kicker is measured then, [`robot_log`] its log, [`version`] what it runs. The bytes are
+//! written down in `protocol/SPEC.md`, and tests hold the code to them.
 //!
 //! **Invariants.** No I/O, no clock, no allocation; no input from outside can panic.
 #![cfg_attr(doctest, doc = include_str!("../README.md"))]
@@ -38,6 +38,7 @@ pub mod provision;
 pub mod pulses;
 pub mod quantized;
 pub mod robot_io;
+pub mod robot_log;
 pub mod serial;
 pub mod slot;
 pub mod station;

@@ -28,9 +28,11 @@ pub const TEAM_MESSAGE_LEN_MAX: usize = 64 - crate::frame::OVERHEAD;
 pub const BRING_UP: u8 = 5;
 /// Likewise: of its kicker, or a host's order to it (`pulses`).
 pub const PULSES: u8 = 9;
+/// Likewise: a piece of its log (`robot_log`).
+pub const LOG: u8 = 10;
 
-/// A message of a robot. Odd numbers are for the host; 5, 7 and 9 are no variants: they are [`BRING_UP`],
-/// [`version::KIND`] and [`PULSES`].
+/// A message of a robot. Odd numbers are for the host; 5 and 7 to 10 are no variants: they are [`BRING_UP`],
+/// [`version::KIND`], [`parts::KIND`], [`PULSES`] and [`LOG`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TeamMessage {
     /// Whole state of the sender, to all.
@@ -45,9 +47,9 @@ pub enum TeamMessage {
 
 impl TeamMessage {
     /// Returns whether a payload is meant for the host alone, by its first byte: the variant's number, or
-    /// [`BRING_UP`], [`version::KIND`], [`parts::KIND`] or [`PULSES`]: one comparison.
+    /// [`BRING_UP`], [`version::KIND`], [`parts::KIND`], [`PULSES`] or [`LOG`]: one comparison.
     pub(crate) const fn is_for_host(payload: &[u8]) -> bool {
-        matches!(*payload, [1 | 3 | BRING_UP | version::KIND | parts::KIND | PULSES, ..])
+        matches!(*payload, [1 | 3 | BRING_UP | version::KIND | parts::KIND | PULSES | LOG, ..])
     }
 }
 

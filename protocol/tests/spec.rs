@@ -13,6 +13,7 @@ use protocol::host_link::HostLink;
 use protocol::parts::{Part, PartState, PartsReport};
 use protocol::pulses::{self, Fired, Pulse, PulseOrder, PulseReport};
 use protocol::quantized::{WirePoint, WirePose};
+use protocol::robot_log::{self, LogReport};
 use protocol::serial::{Lines, line};
 use protocol::station::{self, PacketCounts, RadioPlan, StationMessage, StationReport};
 use protocol::team::{
@@ -248,6 +249,19 @@ fn orders_of_pulses_and_their_reports_have_the_bytes_of_the_specification() {
 }
 
 #[test]
+fn a_piece_of_a_log_has_the_bytes_of_the_specification() {
+    let key = team_key().of_robot(robot(3)).host;
+    let who = Reporter { team: TeamId(1), robot: robot(3), key, epoch: 9 };
+    let bytes = [0x7f, 0, 3, 0x2c, 0x81].into_iter().collect();
+    let report = LogReport { host: 0x6500_0000, at: 1_030, rest: 300, bytes };
+    let packet = who.seal_as(1, robot_log::KIND, &report);
+    let keys = team_key().of_team();
+    let (frame, _, read) = open_report(&packet, (TeamId(1), &keys), robot_log::KIND).unwrap();
+    assert_eq!((read, frame.payload), (report, &worked("log")[..]), "{}", hex(frame.payload));
+    assert!(postcard::from_bytes::<TeamMessage>(frame.payload).is_err(), "no message to a team");
+}
+
+#[test]
 fn a_report_of_what_a_robot_runs_has_the_bytes_of_the_specification() {
     let report = VersionReport { version: [0, 2, 1], image: 0x0102_0304, robot: 5, case_base: u32::MAX };
     assert_eq!(report.payload(), worked("version")[..], "{}", hex(&report.payload()));
@@ -354,9 +368,9 @@ fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
 #[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Ten of robots, two of a base station, two worlds, a pulse, a welcome, limits, two keys, three frames, a
-    // line.
-    assert_eq!(examples, 10 + 2 + worlds().len() + 3 + 2 + 4 + commands().len());
+    // Eleven of robots, two of a base station, two worlds, a pulse, a welcome, limits, two keys, three
+    // frames, a line.
+    assert_eq!(examples, 11 + 2 + worlds().len() + 3 + 2 + 4 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {

@@ -1,6 +1,6 @@
 //! `bring_up`: plays the checks of a robot's first start ([`runtime::bring_up`]) on a board, logs what each
-//! found and what to look at, and reports it to the host by radio (`onetwo robot bring-up`), which may
-//! measure the kicker.
+//! found and what to look at, and reports it and the log to the host by radio (`onetwo robot bring-up`),
+//! which may measure the kicker.
 
 use core::cell::{Cell, RefCell};
 
@@ -9,7 +9,7 @@ use embassy_futures::join::join3;
 use embassy_futures::select::select3;
 use embassy_time::{Duration, Ticker};
 use protocol::bring_up::Reporter;
-use runtime::bring_up::{BringUp, Listener, REPORT_EVERY, Reading, Results};
+use runtime::bring_up::{BringUp, Listener, LogRing, REPORT_EVERY, Reading, Results, RobotLog};
 use runtime::kicker::KickerAct;
 use runtime::ports::{Kicker, Probes as _, RadioReceiver, RadioSender, Watchdog, WheelsPort};
 use runtime::tasks::now;
@@ -22,8 +22,8 @@ use crate::sampling::{self, AnalogInputs, Probes};
 
 /// Plays all checks, then leaves the motors without current. The robot on a stand, wheels off the ground, the
 /// kicker's board unplugged: nothing here charges unless the host arms the kicker, and then no wheel is
-/// driven any more. A robot that has its page reports to its host; without it all is on the log alone. Never
-/// returns.
+/// driven any more. A robot that has its page reports to its host, and sends it what `log` has; without it
+/// all is on the log alone. Never returns.
 pub async fn run(
     wheels: impl WheelsPort,
     (kicker, watchdog): (impl Kicker, impl Watchdog),
@@ -31,6 +31,7 @@ pub async fn run(
     gyroscope: impl Gyroscope,
     analog: impl AnalogInputs,
     who: Option<Identity>,
+    log: impl LogRing,
 ) {
     let listener = Cell::new(Listener::default());
     let results = who.map(|who| {
@@ -42,7 +43,7 @@ pub async fn run(
     }
     let reports = async {
         if let Some(results) = &results {
-            report(sender, results, &listener).await;
+            report(sender, results, &listener, RobotLog::new(log)).await;
         }
     };
     let results = results.as_ref();
@@ -50,17 +51,31 @@ pub async fn run(
     select3(plays, receive(receiver, &listener, results), sampling::run(gyroscope, analog)).await;
 }
 
-/// Reports the state of checks and kicker to the host, for ever.
-async fn report(mut sender: impl RadioSender, results: &RefCell<Results>, listener: &Cell<Listener>) {
+/// Reports the state of checks and kicker to the host, then a piece of the log, for ever.
+async fn report(
+    mut sender: impl RadioSender,
+    results: &RefCell<Results>,
+    listener: &Cell<Listener>,
+    mut log: RobotLog<impl LogRing>,
+) {
     let mut ticker = Ticker::every(Duration::from_micros(REPORT_EVERY.0));
     loop {
         ticker.next().await;
-        // Both borrows end before anything waits.
-        let packets = results.try_borrow_mut().ok().map(|mut results| {
+        let began = now();
+        // All borrows end before anything waits.
+        let (host, packets) = results.try_borrow_mut().map_or((0, None), |mut results| {
             let host = listener.get().host_epoch(results.team());
-            [results.packet(host), Some(results.kick_packet(now(), host))]
+            (host, Some([results.packet(host), Some(results.kick_packet(began, host))]))
         });
         for packet in packets.into_iter().flatten().flatten() {
+            sender.send(packet).await;
+        }
+        // A line that is busy for half of the time with the rest has no room for the log.
+        let is_busy = 2 * now().since(began).0 > REPORT_EVERY.0;
+        let piece = log.report(now(), if is_busy { 0 } else { host });
+        let results = piece.as_ref().and_then(|_| results.try_borrow_mut().ok());
+        let packet = results.zip(piece).map(|(mut results, piece)| results.log_packet(&piece));
+        if let Some(packet) = packet {
             sender.send(packet).await;
         }
     }

@@ -5,13 +5,14 @@
 //! Each check takes what the board's ports measure ([`Reading`]), drives at most one wheel, and ends with
 //! what it measured or with what is wrong ([`Finding`]) and what to look at. No check waits for ever, and
 //! none depends on another: one broken part hides no other. [`Results`] reports the state of each to the
-//! host. Once that arms the kicker, [`Kicks`] fires raw pulses. [`mod@bench`] is a robot of simulated parts
-//! with faults to plant.
+//! host, [`RobotLog`] the board's log. Once the host arms the kicker, [`Kicks`] fires raw pulses.
+//! [`mod@bench`] is a robot of simulated parts with faults to plant.
 
 pub mod bench;
 mod kicks;
 mod listener;
 mod results;
+mod robot_log;
 
 use brain::governor::BATTERY_LOW;
 use protocol::{Duration, Instant};
@@ -21,6 +22,7 @@ pub use kicks::Kicks;
 pub use listener::Listener;
 pub use protocol::bring_up::{CHECKS, Check, CheckReport, Finding};
 pub use results::{REPORT_EVERY, Results};
+pub use robot_log::{LogRing, RobotLog};
 
 use crate::ports::Seen;
 use crate::wheel::{Motors, WHEELS};

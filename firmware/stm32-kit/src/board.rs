@@ -250,6 +250,47 @@ macro_rules! robot_main {
     };
 }
 
+/// Declares `RttRing`, the ring into which defmt-rtt logs. It is only read: read offset and mode, which are
+/// a debug probe's, stay as they are.
+#[macro_export]
+macro_rules! rtt_ring {
+    () => {
+        use core::sync::atomic::{AtomicPtr, AtomicU32, Ordering};
+
+        struct RttRing;
+
+        /// RTT's control block as SEGGER lays it out for probes, up to what is used of the first up channel.
+        #[repr(C)]
+        struct ControlBlock {
+            id: [u8; 16],
+            channels: [u32; 2],
+            name: AtomicPtr<u8>,
+            buffer: AtomicPtr<u8>,
+            len: u32,
+            write: AtomicU32,
+        }
+
+        unsafe extern "C" {
+            // SAFETY: a static of defmt-rtt under the name by which probes find it. It is longer than this
+            // part of it, initialised, and changes in `write` and in fields after it alone.
+            safe static _SEGGER_RTT: ControlBlock;
+        }
+
+        impl runtime::bring_up::LogRing for RttRing {
+            fn look<T>(&self, read: impl FnOnce(&[u8], usize) -> T) -> T {
+                // defmt-rtt writes the ring in critical sections alone, so that it does not change in here.
+                cortex_m::interrupt::free(|_| {
+                    let buffer = _SEGGER_RTT.buffer.load(Ordering::Relaxed);
+                    // SAFETY: `buffer` points to `len` bytes, a static of defmt-rtt. Nothing else runs on the
+                    // processor before the slice is gone, and a probe only reads it.
+                    let ring = unsafe { core::slice::from_raw_parts(buffer, _SEGGER_RTT.len as usize) };
+                    read(ring, _SEGGER_RTT.write.load(Ordering::Acquire) as usize)
+                })
+            }
+        }
+    };
+}
+
 /// Declares `main` of the checks of a robot's first start, on the board of that crate.
 #[macro_export]
 macro_rules! bring_up_main {
@@ -272,7 +313,9 @@ macro_rules! bring_up_main {
             // The last step that may take long is over.
             let watchdog = drivers::BoardWatchdog::start(parts.keeper.watchdog);
             let kicking = (drivers::kicker(parts.kicker), watchdog);
-            board_kit::bring_up::run(wheels, kicking, radio, gyroscope, analog, who).await;
+            board_kit::bring_up::run(wheels, kicking, radio, gyroscope, analog, who, RttRing).await;
         }
+
+        $crate::rtt_ring!();
     };
 }

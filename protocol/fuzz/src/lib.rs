@@ -13,6 +13,7 @@ use protocol::host_link::HostLink;
 use protocol::link::{Link, Received, overhear, overhear_host};
 use protocol::lockstep::{FromRobot, ToRobot};
 use protocol::pulses::{self, PulseReport};
+use protocol::robot_log::{self, LogReport};
 use protocol::serial::{Lines, line as stuffed};
 use protocol::station::{self, StationMessage};
 use protocol::team::TeamMessage;
@@ -89,6 +90,11 @@ pub fn team(bytes: &[u8]) {
         && let Ok((_, _, report)) = open_report::<PulseReport>(packet, (team, &keys), pulses::KIND)
     {
         assert!(bytes.first() == Some(&pulses::KIND) && !format!("{report:?}").is_empty());
+    }
+    if let Some(packet) = &genuine
+        && let Ok((_, _, report)) = open_report::<LogReport>(packet, (team, &keys), robot_log::KIND)
+    {
+        assert!(bytes.first() == Some(&robot_log::KIND) && report.bytes.len() <= robot_log::PIECE_LEN_MAX);
     }
 }
 

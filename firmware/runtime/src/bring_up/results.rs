@@ -3,6 +3,7 @@
 
 use protocol::bring_up::{BringUpReport, CHECKS, CheckState, Reporter};
 use protocol::link::Packet;
+use protocol::robot_log::{self, LogReport};
 use protocol::{Duration, Instant, TeamId, pulses};
 
 use super::{BenchStep, Kicks};
@@ -57,6 +58,12 @@ impl Results {
     pub fn kick_packet(&mut self, now: Instant, host: u32) -> Packet {
         self.counter = self.counter.saturating_add(1);
         self.reporter.seal_as(self.counter, pulses::KIND, &self.kicks.report(now, host))
+    }
+
+    /// The packet that carries that piece of the log.
+    pub fn log_packet(&mut self, piece: &LogReport) -> Packet {
+        self.counter = self.counter.saturating_add(1);
+        self.reporter.seal_as(self.counter, robot_log::KIND, piece)
     }
 
     /// The check of this number with its state, once it has started.

@@ -1,10 +1,14 @@
 //! `lines`: what `onetwo robot bring-up` prints, as text and as JSON.
 
+use std::path::Path;
+
+use foreign::printable_path;
 use protocol::bring_up::{CHECKS, Check, CheckState};
 use protocol::pulses::{Fired, Pulse, PulseRefusal};
 use serde_json::{Value, json};
 
 use super::progress::{Event, Summary};
+use super::robot_log::LogCounts;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
@@ -66,7 +70,19 @@ impl Format {
         }
     }
 
-    /// The last line.
+    /// The line of a log's file.
+    pub(super) fn log(self, file: &Path, counts: LogCounts) -> String {
+        let LogCounts { written, gaps, missing } = counts;
+        let file = printable_path(file);
+        match self {
+            Self::Json => {
+                format!("{}\n", json!({ "log": file, "bytes": written, "gaps": gaps, "missing": missing }))
+            }
+            Self::Text => format!("log {file}: {written} bytes, {missing} missing (gaps: {gaps})\n"),
+        }
+    }
+
+    /// The last line of the checks.
     pub(super) fn summary(self, summary: &Summary) -> String {
         let Summary { robot, passed, failed, open, hears_us } = summary;
         match self {

@@ -2,13 +2,14 @@
 //! (docs/boards.md). It is that robot's host meanwhile: the check of the radio needs frames of one. With
 //! `--kick` it measures the robot's kicker instead.
 //!
-//! [`progress`] reads the frames, [`kicks`] orders pulses, [`lines`] writes what is printed; here are the
-//! link and its clock.
+//! [`progress`] reads the frames, [`kicks`] orders pulses, [`robot_log`] keeps the robot's log, [`lines`]
+//! writes what is printed; here are the link and its clock.
 
 mod failure;
 mod kicks;
 mod lines;
 mod progress;
+mod robot_log;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -35,6 +36,7 @@ use failure::BringUpError;
 use kicks::{KickOptions, Kicks};
 use lines::Format;
 use progress::Progress;
+use robot_log::LogFile;
 
 /// Arguments of `robot bring-up`.
 #[derive(Debug, Args)]
@@ -53,6 +55,9 @@ pub(crate) struct BringUpArgs {
     robot: Option<RobotId>,
     #[command(flatten)]
     kick: KickOptions,
+    /// Write the robot's log, as it comes by radio, to this file: `defmt-print -e IMAGE < FILE` shows it.
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
     /// A JSON object a line: each check when it begins and when it ends, then the counts; or each pulse.
     #[arg(long)]
     json: bool,
@@ -65,6 +70,10 @@ pub(crate) struct BringUpArgs {
 const SNAPSHOT_EVERY: Duration = Duration::from_millis(10);
 /// Snapshots for each order of a pulse: ten orders within the silence that disarms a robot.
 const SNAPSHOTS_PER_ORDER: u8 = 5;
+/// Least time for the rest of the log after all else: ten of its pieces.
+const LOG_TAIL_MIN: Duration = Duration::from_millis(200);
+/// Greatest time, if bytes are missing: a robot sends all that it keeps four times or more.
+const LOG_TAIL_MAX: Duration = Duration::from_secs(5);
 
 /// Exit code 1 if a check failed or a pulse was refused.
 pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
@@ -76,25 +85,59 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
     if read.key == TeamKey::ZERO {
         return Err(PublicKey { link: args.robots.clone(), file: Some(args.key_file.clone()) }.into());
     }
-    let stopped = stopped_by_hand();
     let mut link = open(&robots, (args.team, AirSettings::default().plan(args.team, read.key)))?;
     let epoch = real_epoch();
     if let Some(warning) = &epoch.warning {
         note!("warning: {warning}");
     }
-    let mut host = HostLink::new(args.team, read.key, epoch.epoch);
+    let host = HostLink::new(args.team, read.key, epoch.epoch);
     let mut progress = Progress::new(args.team, &read.key, host.epoch(), args.robot);
+    let mut log = match &args.log {
+        Some(file) => Some(LogFile::create(file, &args.key_file)?),
+        None => None,
+    };
     let format = if args.json { Format::Json } else { Format::Text };
+    let ended = follow(args, format, &mut *link, (host, &mut progress), log.as_mut());
+    if let Some(mut log) = log {
+        let counts = log.finish()?;
+        print_text(&format.log(&log.path, counts))?;
+        if !log.has_begun() && progress.summary().is_some() {
+            note!(
+                "warning: the robot sent no log: its image is older than this release, or does not log; build and flash its board's \
+                 example bring_up_BOARD again"
+            );
+        }
+    }
+    ended
+}
+
+/// Prints what the robot reports, until all is done or nothing comes any more.
+fn follow(
+    args: &BringUpArgs,
+    format: Format,
+    link: &mut dyn Link,
+    (mut host, progress): (HostLink, &mut Progress),
+    mut log: Option<&mut LogFile>,
+) -> Result<ExitCode, Failure> {
+    let stopped = stopped_by_hand();
     note!("waiting for a robot's checks over {}; Ctrl-C ends it", args.robots);
     let began = Instant::now();
     let (mut news, mut due, mut snapshot) = (began, began, 0_u8);
     let (mut kicks, mut refused) = (Kicks::new(&args.kick, Duration::from_secs_f64(args.patience)), 0);
-    while kicks.as_ref().map_or(!progress.is_complete(), |kicks| kicks.next.is_some()) {
+    let mut done = None;
+    loop {
+        if kicks.as_ref().map_or(progress.is_complete(), |kicks| kicks.next.is_none()) {
+            let tail = done.get_or_insert_with(Instant::now).elapsed();
+            let wanted = log.as_ref().map(|log| if log.is_whole() { LOG_TAIL_MIN } else { LOG_TAIL_MAX });
+            if wanted.is_none_or(|wanted| tail > wanted) {
+                break;
+            }
+        }
         if stopped.load(Ordering::Relaxed) {
             break;
         }
         if news.elapsed().as_secs_f64() > args.patience {
-            return Err(silent(&progress, args.patience, &*link).into());
+            return Err(silent(progress, args.patience, link).into());
         }
         if due <= Instant::now() {
             due = Instant::now() + SNAPSHOT_EVERY;
@@ -115,6 +158,9 @@ pub(super) fn run(args: &BringUpArgs) -> Result<ExitCode, Failure> {
             let taken = progress.take(&packet);
             if taken.is_report {
                 news = Instant::now();
+            }
+            if let (Some(log), Some((start, piece))) = (&mut log, &taken.log) {
+                log.take(*start, piece)?;
             }
             if let Some(kicks) = &mut kicks {
                 if let Some((pulse, result)) = taken.kicker.and_then(|report| kicks.take(news, report)) {

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use protocol::bring_up::{self, BringUpReport, CHECKS, Check, CheckState};
 use protocol::frame::{Frame, Refusal, Sender, Sessions, TeamKey, TeamKeys, open_report};
 use protocol::pulses::{self, PulseReport};
+use protocol::robot_log::{self, LogReport};
 use protocol::{RobotId, TeamId};
 
 /// A change since the packet before.
@@ -27,6 +28,15 @@ pub(super) struct Taken {
     pub(super) events: Vec<Event>,
     /// State of its kicker, with the robot's start.
     pub(super) kicker: Option<(u32, PulseReport)>,
+    /// A piece of its log, likewise.
+    pub(super) log: Option<(u32, LogReport)>,
+}
+
+/// Report of a robot.
+enum Report {
+    Check(BringUpReport),
+    Kicker(PulseReport),
+    Log(LogReport),
 }
 
 /// Counts of the list.
@@ -106,22 +116,26 @@ impl Progress {
 
     fn read(&mut self, packet: &[u8]) -> Result<Taken, Refusal> {
         let frame = Frame::parse(packet, self.team)?;
-        let (robot, check, kicker) = match (frame.sender, frame.payload.first()) {
+        let who = (self.team, &self.keys);
+        let (robot, host, report) = match (frame.sender, frame.payload.first()) {
             (Sender::Robot(robot), Some(&bring_up::KIND)) => {
-                (robot, Some(bring_up::open(packet, self.team, &self.keys)?.2), None)
+                let (_, _, report) = bring_up::open(packet, self.team, &self.keys)?;
+                (robot, report.host, Report::Check(report))
             }
-            (Sender::Robot(robot), Some(&pulses::KIND)) => (
-                robot,
-                None,
-                Some(open_report::<PulseReport>(packet, (self.team, &self.keys), pulses::KIND)?.2),
-            ),
+            (Sender::Robot(robot), Some(&pulses::KIND)) => {
+                let (_, _, report) = open_report::<PulseReport>(packet, who, pulses::KIND)?;
+                (robot, report.host, Report::Kicker(report))
+            }
+            (Sender::Robot(robot), Some(&robot_log::KIND)) => {
+                let (_, _, report) = open_report::<LogReport>(packet, who, robot_log::KIND)?;
+                (robot, report.host, Report::Log(report))
+            }
             (sender, _) => {
                 self.others.extend(sender.robot());
                 return Ok(Taken::default());
             }
         };
         self.sessions.check(&frame)?;
-        let host = check.map(|report| report.host).or(kicker.map(|report| report.host)).unwrap_or_default();
         if host != 0 && host != self.epoch {
             self.other_host = Some(host);
             return Ok(Taken::default());
@@ -132,8 +146,14 @@ impl Progress {
             return Ok(Taken::default());
         }
         self.sessions.accept(&frame);
-        let events = check.map(|report| self.follow(robot, frame.epoch, &report)).unwrap_or_default();
-        Ok(Taken { is_report: true, events, kicker: kicker.map(|report| (frame.epoch, report)) })
+        let mut taken = Taken { is_report: true, ..Taken::default() };
+        match report {
+            Report::Check(report) => taken.events = self.follow(robot, frame.epoch, &report),
+            Report::Kicker(report) => taken.kicker = Some((frame.epoch, report)),
+            // Which robot is followed, a check decides.
+            Report::Log(piece) => taken.log = followed.map(|_| (frame.epoch, piece)),
+        }
+        Ok(taken)
     }
 
     fn follow(&mut self, robot: RobotId, start: u32, report: &BringUpReport) -> Vec<Event> {
