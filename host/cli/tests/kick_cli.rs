@@ -1,7 +1,9 @@
 //! `kick_cli`: `onetwo robot bring-up --kick` beside a robot with a kicker of simulated parts on UDP, whose
 //! radio loses packets: what is printed is what was fired.
 
-use std::net::{SocketAddr, UdpSocket};
+mod lossy;
+
+use std::net::UdpSocket;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,6 +18,8 @@ use protocol::{RobotId, TeamId};
 use runtime::bring_up::{Listener, Results};
 use runtime::kicker::{FULL_VOLTS, KickerAct, KickerState};
 use serde_json::Value;
+
+use lossy::LossyStation;
 
 const KEY: TeamKey = TeamKey([0x5a; 16]);
 const TEAM: TeamId = TeamId(2);
@@ -42,29 +46,20 @@ fn onetwo(robots: &str, name: &str, more: &[&str]) -> Output {
 
 /// A robot with its kicker behind a base station that loses that share of its packets, both ways; a person
 /// lays the next ball a quarter of a second after a kick. Returns its pulses.
-fn robot(station: &UdpSocket, charger: bool, loses: f32, end: &AtomicBool) -> Vec<KickerAct> {
+fn robot(mut station: LossyStation<'_>, charger: bool, end: &AtomicBool) -> Vec<KickerAct> {
     let robot = RobotId::new(3).expect("a number");
     let who = Reporter { team: TEAM, robot, key: KEY.of_robot(robot).host, epoch: 17 };
     let (mut results, mut listener, mut volts) = (Results::new(who), Listener::default(), 0.0_f32);
-    let (mut pulses, mut host, mut dice) = (Vec::new(), None::<SocketAddr>, 1_u32);
-    let mut is_lost = || {
-        dice = dice.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        ((dice >> 8) as f32 / 16_777_216.0) < loses
-    };
-    station.set_nonblocking(true).expect("a socket");
+    let mut pulses = Vec::new();
     let (began, mut kicked, mut ms) = (Instant::now(), 0_u64, 0_u64);
-    let mut bytes = [0; 200];
     while !end.load(Ordering::Relaxed) {
         ms += 1;
         thread::sleep(Duration::from_millis(ms).saturating_sub(began.elapsed()));
         let now = protocol::Instant(1_000 * ms);
-        while let Ok((len, from)) = station.recv_from(&mut bytes) {
-            host = Some(from);
-            if !is_lost() {
-                listener.receive(&bytes[..len]);
-                results.kicks.receive(now, &bytes[..len]);
-            }
-        }
+        station.receive(|packet| {
+            listener.receive(packet);
+            results.kicks.receive(now, packet);
+        });
         let act = results.kicks.step(now, KickerState { ball: ms > kicked + 250, volts });
         match act {
             KickerAct::Charge if charger => volts = (volts + FULL_VOLTS / 1_000.0).min(1.02 * FULL_VOLTS),
@@ -77,10 +72,8 @@ fn robot(station: &UdpSocket, charger: bool, loses: f32, end: &AtomicBool) -> Ve
             }
         }
         let heard = listener.host_epoch(TEAM);
-        let Some(host) = host.filter(|_| ms.is_multiple_of(20)) else { continue };
-        let packet = results.kick_packet(now, heard);
-        if !is_lost() {
-            let _ = station.send_to(&packet, host);
+        if station.has_host() && ms.is_multiple_of(20) {
+            station.send(&results.kick_packet(now, heard));
         }
     }
     pulses
@@ -91,7 +84,7 @@ fn played(name: &str, charger: bool, loses: f32, more: &[&str]) -> (Output, Vec<
     let robots = format!("udp://{}", station.local_addr().expect("an address"));
     let end = AtomicBool::new(false);
     thread::scope(|scope| {
-        let fired = scope.spawn(|| robot(&station, charger, loses, &end));
+        let fired = scope.spawn(|| robot(LossyStation::new(&station, loses), charger, &end));
         let output = onetwo(&robots, name, more);
         end.store(true, Ordering::Relaxed);
         (output, fired.join().expect("the robot"))

@@ -1,8 +1,10 @@
 //! `log_cli`: `onetwo robot bring-up --log` beside a robot on UDP that logs while its kicker is measured, and
 //! whose radio loses packets: the file has what was logged, and nothing else waits for it.
 
+mod lossy;
+
 use std::cell::{Cell, RefCell};
-use std::net::{SocketAddr, UdpSocket};
+use std::net::UdpSocket;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,6 +18,8 @@ use runtime::bring_up::{BenchStep, Listener, LogRing, Results, RobotLog};
 use runtime::kicker::{FULL_VOLTS, KickerAct, KickerState};
 use runtime::wheel::Motors;
 use serde_json::Value;
+
+use lossy::LossyStation;
 
 const KEY: TeamKey = TeamKey([0x5a; 16]);
 const TEAM: TeamId = TeamId(2);
@@ -59,32 +63,24 @@ struct Played {
 
 /// A robot with its kicker behind a base station that loses that share of its packets, both ways. It logs 600
 /// bytes at the start, 80 a second until its second pulse, and frames that fill the ring thrice if asked.
-fn robot(station: &UdpSocket, (logs, floods): (bool, bool), loses: f32, end: &AtomicBool) -> Played {
+fn robot(mut station: LossyStation<'_>, (logs, floods): (bool, bool), end: &AtomicBool) -> Played {
     let robot = RobotId::new(3).expect("a number");
     let who = Reporter { team: TEAM, robot, key: KEY.of_robot(robot).host, epoch: 17 };
     let (mut results, mut listener, mut volts) = (Results::new(who), Listener::default(), 0.0_f32);
     results.take(&BenchStep { motors: Motors::Released, report: None, check: Some(CHECKS[0]) });
     let ring = Ring { bytes: RefCell::new([0; 1_024]), end: Cell::new(0), all: RefCell::new(Vec::new()) };
     let mut log = RobotLog::new(&ring);
-    let (mut fired, mut sent, mut host, mut dice) = (0, Vec::new(), None::<SocketAddr>, 1_u32);
-    let mut is_lost = || {
-        dice = dice.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        ((dice >> 8) as f32 / 16_777_216.0) < loses
-    };
+    let (mut fired, mut sent) = (0, Vec::new());
     (0..15).for_each(|_| ring.log());
-    station.set_nonblocking(true).expect("a socket");
-    let (began, mut ms, mut bytes) = (Instant::now(), 0_u64, [0; 200]);
+    let (began, mut ms) = (Instant::now(), 0_u64);
     while !end.load(Ordering::Relaxed) {
         ms += 1;
         thread::sleep(Duration::from_millis(ms).saturating_sub(began.elapsed()));
         let now = protocol::Instant(1_000 * ms);
-        while let Ok((len, from)) = station.recv_from(&mut bytes) {
-            host = Some(from);
-            if !is_lost() {
-                listener.receive(&bytes[..len]);
-                results.kicks.receive(now, &bytes[..len]);
-            }
-        }
+        station.receive(|packet| {
+            listener.receive(packet);
+            results.kicks.receive(now, packet);
+        });
         if ms.is_multiple_of(500) && fired < 2 || floods && (1_500..1_575).contains(&ms) {
             ring.log();
         }
@@ -99,16 +95,16 @@ fn robot(station: &UdpSocket, (logs, floods): (bool, bool), loses: f32, end: &At
             }
         }
         // As a board does (`board_kit::bring_up`).
-        let Some(host) = host.filter(|_| ms.is_multiple_of(20)) else { continue };
+        if !station.has_host() || !ms.is_multiple_of(20) {
+            continue;
+        }
         let heard = listener.host_epoch(TEAM);
         let piece = log.report(now, heard).filter(|_| logs);
         let packets = [results.packet(heard), Some(results.kick_packet(now, heard))];
         let log = piece.map(|piece| results.log_packet(&piece));
         for packet in packets.into_iter().chain([log]).flatten() {
             sent.push((ms, Frame::parse(&packet, TEAM).expect("a frame").payload[0]));
-            if !is_lost() {
-                let _ = station.send_to(&packet, host);
-            }
+            station.send(&packet);
         }
     }
     Played { logged: ring.all.take(), fired, sent }
@@ -138,7 +134,7 @@ fn played(name: &str, log: (bool, bool), loses: f32, more: &[&str]) -> (Output, 
     let (key, path, end) = (file(&format!("{name}.key")), file(name), AtomicBool::new(false));
     std::fs::write(&key, "5a".repeat(16)).expect("a key file");
     let (output, robot) = thread::scope(|scope| {
-        let robot = scope.spawn(|| robot(&station, log, loses, &end));
+        let robot = scope.spawn(|| robot(LossyStation::new(&station, loses), log, &end));
         let output = onetwo(&robots, &key, &path, more);
         end.store(true, Ordering::Relaxed);
         (output, robot.join().expect("the robot"))
