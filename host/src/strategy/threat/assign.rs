@@ -133,17 +133,16 @@ impl Giving<'_> {
         match cover.primaries[..] {
             [lower, upper] => self.pair([lower, upper], before),
             [place] => {
-                let guard = self.nearest(place, before[0], worth);
+                let mut guard = self.nearest(place, before[0], worth);
                 // The spare one may be away along the edge to guard a second-level threat, so it is held
                 // longer.
                 let beside = cover.spare_place(&self.edge, self.settings);
-                let spare = self.nearest(beside, before[1], 2.0 * worth);
-                let (guard, spare) = match (guard, spare) {
-                    (Some(guard), Some(spare)) if crosses(&guard, &spare, [place, beside]) => {
-                        (Some(spare), Some(guard))
-                    }
-                    pair => pair,
-                };
+                let mut spare = self.nearest(beside, before[1], 2.0 * worth);
+                if let (Some(one), Some(other)) = (&guard, &spare)
+                    && crosses(one, other, [place, beside])
+                {
+                    core::mem::swap(&mut guard, &mut spare);
+                }
                 let guard = guard.map(|robot| Primary { robot: robot.id, place, needed: true });
                 let spare = spare.map(|robot| Primary { robot: robot.id, place: beside, needed: false });
                 guard.into_iter().chain(spare).collect()
