@@ -353,9 +353,9 @@ const EFFORT_OF_GAMEPLAY: u32 = 7_000;
 const INPUTS_OF_PLAN_MAX: u32 = 10_500;
 /// The same of a plan that tests the straight path only.
 const INPUTS_OF_LEAST_PLAN_MAX: u32 = 13_500;
-/// The same after which no part of a snapshot is opened: one whole snapshot, a command and two teammates'
-/// beacons are below it. Where the referee's phase changes the host may send two snapshots in a step, and the
-/// third one comes 10 ms later: opened, both took 40,160 instructions.
+/// The same after which no part of a snapshot is opened: less than one whole snapshot, a command and two
+/// teammates' beacons, 8,370. When the referee's phase changes, the host may send two snapshots in a step; a
+/// step that opened both took 40,160 instructions. The next snapshot comes a camera frame later.
 const INPUTS_OF_SNAPSHOT_MAX: u32 = 8_300;
 /// Instructions of inputs after which no other packet is opened, from any sender: a step that opens as many
 /// reuses its path.

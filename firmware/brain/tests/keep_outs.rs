@@ -265,8 +265,8 @@ fn in_stop_placements_and_free_kicks_it_leaves_too_the_keeper_as_well() {
 #[test]
 fn others_that_stand_about_close_no_way_out() {
     // Keepers of 2013 do not get past three robots that stand close before their goal opening of 0.7 m, and
-    // one swings between two ways beside its post: 9 to 11 of 28,080 drives, by whatever a plan may take.
-    // Of an eighth of them 1 to 3 are by chance: the share that is allowed is asked of all.
+    // one swings between two paths beside its post: 9 to 11 of 28,080 drives, however much effort a plan has.
+    // An eighth of these drives, with 1 to 3 failures, shows chance rather than the share.
     alone(&prepared().chain(stopped()).collect::<Vec<_>>(), starts(120), 11, 16);
 }
 

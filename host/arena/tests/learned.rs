@@ -67,8 +67,8 @@ fn play(seed: u64, seconds: u32, gain: fn(TeamId, RobotId) -> f32, delay: u32) -
 fn kickers_that_give_less_or_more_than_ordered_are_known_from_the_kicks_of_a_match() {
     let gain = |team: TeamId, _: RobotId| if team == TeamId::of(Colour::Blue) { 0.72 } else { 1.1 };
     let mut known = BTreeMap::new();
-    // Most kicks are the robots' own, from which no gain is learned: few robots reach the kicks it takes, in
-    // whole matches more than in as many minutes of half ones.
+    // Most kicks are the robots' own, from which no gain is learned: few robots reach the kicks it takes,
+    // and more of them in three whole matches than in six halves.
     for seed in 1..=3 {
         let game = play(seed, 600, gain, 1);
         for (colour, truth) in [(Colour::Blue, 0.72), (Colour::Yellow, 1.1)] {
