@@ -38,6 +38,8 @@ struct Since {
     effort: u32,
     /// Those of them that the host's packets took.
     host_effort: u32,
+    /// Genuine parts of snapshots.
+    snapshot_parts: u8,
     /// Whether it has retrieved.
     retrieved: bool,
     /// A gameplay has started or ended.
@@ -126,17 +128,22 @@ impl<'a> Brain<'a> {
 
     /// Whether another packet may be opened before the next step. Where steps are short the others are lost
     /// and counted. A teammate's leaves room for what the host sends in a step, so that no number of beacons
-    /// keeps a command or HALT away, which every command repeats; a step that has to plan opens no snapshot.
+    /// keeps a command or HALT away, which every command repeats; a step that has to plan opens no snapshot,
+    /// and none opens a second one: when the referee's phase changes, the host may send two within 10 ms,
+    /// which took 40,160 instructions. Forged parts do not count as one.
     pub(crate) fn takes_packet(&mut self, now: Instant, kind: PacketKind) -> bool {
         if !self.has_short_steps() {
             return true;
         }
-        let Since { effort, host_effort, gameplay_changed, .. } = self.since;
+        let Since { effort, host_effort, snapshot_parts, gameplay_changed, .. } = self.since;
         let must_plan = self.reuses_left == 0 || self.actuation.needs_time();
         let needs_snapshot = self.host.as_ref().is_some_and(|host| host.needs_snapshot(now));
+        let parts_max = self.host.as_ref().and_then(Hosted::parts_of_snapshot).unwrap_or(u8::MAX);
         let takes = match kind {
             PacketKind::Command => effort < INPUTS_MAX,
-            PacketKind::Snapshot => (!must_plan || needs_snapshot) && effort < INPUTS_OF_SNAPSHOT_MAX,
+            PacketKind::Snapshot => {
+                (!must_plan || needs_snapshot) && snapshot_parts < parts_max && effort < INPUTS_MAX
+            }
             PacketKind::Beacon => {
                 let gameplay = if gameplay_changed { 0 } else { EFFORT_OF_GAMEPLAY };
                 let most = if must_plan { INPUTS_OF_PLAN_MAX } else { INPUTS_MAX - gameplay };
@@ -198,6 +205,9 @@ impl<'a> Brain<'a> {
     pub fn handle_host_message(&mut self, now: Instant, age: Duration, message: &HostMessage) {
         let Some(host) = &mut self.host else { return };
         self.timers.advance(now);
+        if let HostMessage::World(_) = message {
+            self.since.snapshot_parts = self.since.snapshot_parts.saturating_add(1);
+        }
         if let Some(received) = host.handle(now, age, message) {
             self.actuation.receive_host(received);
         }
@@ -353,10 +363,6 @@ const EFFORT_OF_GAMEPLAY: u32 = 7_000;
 const INPUTS_OF_PLAN_MAX: u32 = 10_500;
 /// The same of a plan that tests the straight path only.
 const INPUTS_OF_LEAST_PLAN_MAX: u32 = 13_500;
-/// The same after which no part of a snapshot is opened: less than one whole snapshot, a command and two
-/// teammates' beacons, 8,370. When the referee's phase changes, the host may send two snapshots in a step; a
-/// step that opened both took 40,160 instructions. The next snapshot comes a camera frame later.
-const INPUTS_OF_SNAPSHOT_MAX: u32 = 8_300;
 /// Instructions of inputs after which no other packet is opened, from any sender: a step that opens as many
 /// reuses its path.
 const INPUTS_MAX: u32 = 18_000;

@@ -123,6 +123,11 @@ impl Hosted {
         self.snapshot.own_age(now).is_none_or(|age| age > OWN_POSE_AGE_MAX)
     }
 
+    /// Number of parts of the newest snapshot; `None` before the first.
+    pub fn parts_of_snapshot(&self) -> Option<u8> {
+        self.snapshot.parts_sent()
+    }
+
     /// The directive, while it is fresh.
     pub fn directive(&self, now: Instant) -> Option<&Directive> {
         let (at, command) = self.command.as_ref()?;

@@ -62,6 +62,8 @@ pub struct HostSnapshot {
     received: Instant,
     /// Parts of this snapshot that were received, a bit each.
     parts: u8,
+    /// Number of parts in which it was sent.
+    parts_sent: u8,
     /// The phase of the game.
     phase: Option<Phase<Side>>,
     /// Target of a ball placement.
@@ -90,6 +92,7 @@ impl HostSnapshot {
             number: None,
             received: Instant(0),
             parts: 0,
+            parts_sent: 0,
             phase: None,
             placement: None,
             ball: None,
@@ -113,6 +116,7 @@ impl HostSnapshot {
         }
         self.received = now;
         self.parts |= 1 << part.part;
+        self.parts_sent = part.parts;
         self.phase = Some(part.phase);
         self.placement = part.placement.map(Into::into);
         if taken == Taken::Begun {
@@ -150,6 +154,11 @@ impl HostSnapshot {
     /// Arrival of the newest part; `None` before the first.
     pub fn received(&self) -> Option<Instant> {
         self.number.map(|_| self.received)
+    }
+
+    /// Number of parts in which the newest snapshot was sent; `None` before the first.
+    pub fn parts_sent(&self) -> Option<u8> {
+        self.number.map(|_| self.parts_sent)
     }
 
     /// The phase in the newest part.

@@ -310,15 +310,16 @@ const PATH_AGE_MAX: u8 = 20;
 const COASTS_MAX: u8 = 2;
 /// Instructions that a step leaves for inputs, its message, a skill and planning a path: 40,000
 /// (docs/architecture.md §9) less what every step takes and what estimates err by. In ten matches of 60 s of
-/// six images (seeds 1 to 10) the worst steps took 36,826 to 39,105.
+/// six images (seeds 1 to 10) the worst steps took 36,841 to 38,942.
 const EFFORT: u32 = 21_000;
 /// Instructions that a plan among obstacles has besides the least, for a search.
 const EFFORT_OF_SEARCH: u32 = 1_500;
 /// Instructions of a skill, such as placing the ball or a kick: it also plans a path behind the ball.
 const EFFORT_OF_SKILL: u32 = 4_000;
-/// Instructions of a stopped game's regions, which every robot keeps out of. In ten matches of 60 s (seeds 1
-/// to 10) the worst step takes 40,807 without it, 39,105 with it and 39,442 with twice as much; of 96
-/// preparations of division A (24 seeds of `arena`'s test `prepare`) 2, 1 and 2 ended with a robot late.
+/// Instructions of a stopped game's regions, which every robot keeps out of. At commit d510d255, in ten matches
+/// of 60 s (seeds 1 to 10), the worst step took 40,807 without it, 39,105 with it and 39,442 with twice as
+/// much; of 96 preparations of division A (24 seeds of `arena`'s test `prepare`) 2, 1 and 2 ended with a
+/// robot late.
 const EFFORT_OF_REGIONS: u32 = 1_500;
 
 /// Whether the allowed positions of a robot change in this phase without a new directive: with the ball, or
