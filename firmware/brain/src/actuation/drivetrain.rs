@@ -316,10 +316,10 @@ const EFFORT: u32 = 21_000;
 const EFFORT_OF_SEARCH: u32 = 1_500;
 /// Instructions of a skill, such as placing the ball or a kick: it also plans a path behind the ball.
 const EFFORT_OF_SKILL: u32 = 4_000;
-/// Instructions of a stopped game's regions, which every robot keeps out of. At commit d510d255, in ten matches
-/// of 60 s (seeds 1 to 10), the worst step took 40,807 without it, 39,105 with it and 39,442 with twice as
-/// much; of 96 preparations of division A (24 seeds of `arena`'s test `prepare`) 2, 1 and 2 ended with a
-/// robot late.
+/// Instructions of a stopped game's regions, which every robot keeps out of. At commit d510d255, in ten
+/// matches of 60 s (seeds 1 to 10), the worst step took 40,807 without it, 39,105 with it, 39,442 with
+/// twice as much; of 96 preparations of division A (24 seeds of `arena`'s test `prepare`) 2, 1 and 2
+/// ended with a robot late.
 const EFFORT_OF_REGIONS: u32 = 1_500;
 
 /// Whether the allowed positions of a robot change in this phase without a new directive: with the ball, or
