@@ -38,8 +38,6 @@ struct Since {
     effort: u32,
     /// Those of them that the host's packets took.
     host_effort: u32,
-    /// Genuine parts of snapshots.
-    snapshot_parts: u8,
     /// Whether it has retrieved.
     retrieved: bool,
     /// A gameplay has started or ended.
@@ -129,20 +127,19 @@ impl<'a> Brain<'a> {
     /// Whether another packet may be opened before the next step. Where steps are short the others are lost
     /// and counted. A teammate's leaves room for what the host sends in a step, so that no number of beacons
     /// keeps a command or HALT away, which every command repeats; a step that has to plan opens no snapshot,
-    /// and none opens a second one: when the referee's phase changes, the host may send two within 10 ms,
-    /// which took 40,160 instructions. Forged parts do not count as one.
+    /// and others little more than a whole one.
     pub(crate) fn takes_packet(&mut self, now: Instant, kind: PacketKind) -> bool {
         if !self.has_short_steps() {
             return true;
         }
-        let Since { effort, host_effort, snapshot_parts, gameplay_changed, .. } = self.since;
+        let Since { effort, host_effort, gameplay_changed, .. } = self.since;
         let must_plan = self.reuses_left == 0 || self.actuation.needs_time();
         let needs_snapshot = self.host.as_ref().is_some_and(|host| host.needs_snapshot(now));
-        let parts_max = self.host.as_ref().and_then(Hosted::parts_of_snapshot).unwrap_or(u8::MAX);
+        let parts = self.host.as_ref().and_then(Hosted::parts_of_snapshot);
         let takes = match kind {
             PacketKind::Command => effort < INPUTS_MAX,
             PacketKind::Snapshot => {
-                (!must_plan || needs_snapshot) && snapshot_parts < parts_max && effort < INPUTS_MAX
+                (!must_plan || needs_snapshot) && effort < parts.map_or(INPUTS_MAX, inputs_of_snapshot_max)
             }
             PacketKind::Beacon => {
                 let gameplay = if gameplay_changed { 0 } else { EFFORT_OF_GAMEPLAY };
@@ -205,9 +202,6 @@ impl<'a> Brain<'a> {
     pub fn handle_host_message(&mut self, now: Instant, age: Duration, message: &HostMessage) {
         let Some(host) = &mut self.host else { return };
         self.timers.advance(now);
-        if let HostMessage::World(_) = message {
-            self.since.snapshot_parts = self.since.snapshot_parts.saturating_add(1);
-        }
         if let Some(received) = host.handle(now, age, message) {
             self.actuation.receive_host(received);
         }
@@ -371,3 +365,12 @@ const INPUTS_MAX: u32 = 18_000;
 const PATH_REUSES_MAX: u8 = 10;
 /// Steps between two that plan on a radio channel that is always full, as in division A.
 const PATH_REUSES: u8 = 3;
+
+/// Instructions of a short step's inputs after which it opens no part of a snapshot, where a whole snapshot
+/// has `parts`: all of them, a command and two teammates' beacons. When the referee's phase changes, the host
+/// may send two snapshots within 10 ms: a step that opened both took 40,160 instructions.
+fn inputs_of_snapshot_max(parts: u8) -> u32 {
+    let part = EFFORT_OF_PACKET + EFFORT_OF_SNAPSHOT;
+    let rest = 3 * EFFORT_OF_PACKET + EFFORT_OF_COMMAND + 2 * EFFORT_OF_FRAME;
+    (u32::from(parts) * part + rest).min(INPUTS_MAX)
+}
