@@ -5,10 +5,11 @@
 //! sensor on the other side of the field does not move it there. With theirs, at the one whose front was at
 //! it when it vanished. Tracking leaves a ball that vanished at a robot's front there; where that robot is
 //! ours and its sensor does not detect the ball, the opponent beside it has taken it, or it lies where it
-//! was last seen. At a restart after a placement it lies where it was placed: the robot that brought it
-//! there hid it on the path, and the last visible place is metres off. Else it lies at its stop position.
-//! Without this a robot that must keep off the ball would approach it as soon as it is hidden, and one that
-//! backs off a ball it hides would search it elsewhere.
+//! was last seen; where it is theirs and the sensor of ours beside it detects the ball, ours has it. At a
+//! restart after a placement it lies where it was placed: the robot that brought it there hid it on the path,
+//! and the last visible place is metres off. Else it lies at its stop position. Without this a robot that
+//! must keep off the ball would approach it as soon as it is hidden, and one that backs off a ball it hides
+//! would search it elsewhere.
 
 use geometry::{Field, Point, Vector};
 use protocol::{Duration, Instant, RobotId, Who};
@@ -23,7 +24,7 @@ const HIDES_WITHIN_M: f32 = 0.06;
 /// Time unseen after which a robot's sensor decides whether it has the ball: two telemetry periods, and
 /// vision's delay.
 const SENSOR_DECIDES_AFTER: Duration = Duration::millis(300);
-/// An opponent's front is this near a ball that it takes off ours, m: a robot's diameter.
+/// A robot's front is this near a ball that it takes off another team's, m: a robot's diameter.
 const TAKES_WITHIN_M: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
 /// No ball moves faster, m/s: the rules' limit of a kick, 6.5 m/s, and 0.5 m/s by which kickers err.
 const BALL_SPEED_MAX_M_S: f32 = 7.0;
@@ -57,8 +58,12 @@ impl HiddenBall {
         }
         if let Some(ball) = world.ball {
             let hides = |robot: &&Robot| dribbler_point(robot).distance(ball.position) < HIDES_WITHIN_M;
-            let without = |robot: &Robot| hides(&robot) && feels(robot.who.id) == Some(false);
-            if now.since(ball.seen) < SENSOR_DECIDES_AFTER || !world.ours(us).any(without) {
+            let contradicts = |robot: &Robot| match feels(robot.who.id) {
+                Some(true) => !hides(&robot) && self.was_beside(robot),
+                Some(false) => hides(&robot),
+                None => false,
+            };
+            if now.since(ball.seen) < SENSOR_DECIDES_AFTER || !world.ours(us).any(contradicts) {
                 self.last = Some(ball);
                 self.by = world.theirs(us).find(hides).map(|robot| robot.who);
                 return;
@@ -84,6 +89,11 @@ impl HiddenBall {
         };
         let seen = self.last.map_or(now, |last| last.seen);
         world.ball = Some(Ball { velocity, confidence: 0.0, ..Ball::at_rest(position, seen) });
+    }
+
+    /// Whether the ball was last so near to the robot's front that the robot may have taken it.
+    fn was_beside(&self, robot: &Robot) -> bool {
+        self.last.is_some_and(|last| dribbler_point(robot).distance(last.position) < TAKES_WITHIN_M)
     }
 
     /// Of our robots whose sensors detect the ball, the one nearest to where it was last, if the ball can
@@ -213,6 +223,34 @@ mod tests {
         world.put(robot(theirs, 1.45));
         world.ball = Some(ball(2.08));
         assert_eq!(at(600, &world, NO_ROBOT), 1540.0, "the opponent's front was beside it");
+    }
+
+    /// Tracking carries it along with the opponent's front, and the sensor of ours detects it all the time.
+    #[test]
+    fn a_ball_that_vanished_at_an_opponent_is_at_our_robot_beside_it_that_feels_it() {
+        let (ours, theirs) = (Who::yellow(RobotId::ZERO), Who::blue(RobotId::ZERO));
+        let mut hidden = HiddenBall::default();
+        let mut at = |ms: u64, (x_of_ours, x_of_theirs): (f32, f32)| {
+            let mut world = World::default();
+            world.put(robot(ours, x_of_ours));
+            world.put(robot(theirs, x_of_theirs));
+            world.ball = Some(ball(x_of_theirs + 0.09));
+            hidden.fill(Instant(ms * 1000), &mut world, Colour::Yellow, &Game::default(), |_| Some(true));
+            (world.ball.unwrap().position.x() * 1000.0).round()
+        };
+        assert_eq!(at(200, (1.1, 1.0)), 1090.0, "just vanished");
+        assert_eq!(at(300, (1.1, 1.0)), 1190.0);
+        assert_eq!(at(400, (1.2, 0.9)), 1290.0, "they part");
+        let mut far = HiddenBall::default();
+        let mut world = World::default();
+        world.put(robot(ours, 1.5));
+        world.put(robot(theirs, 1.0));
+        world.ball = Some(ball(1.09));
+        for ms in [100, 400] {
+            let mut world = world.clone();
+            far.fill(Instant(ms * 1000), &mut world, Colour::Yellow, &Game::default(), |_| Some(true));
+            assert_eq!(world.ball.unwrap().position.x(), 1.09, "half a metre off: a stuck sensor");
+        }
     }
 
     #[test]
