@@ -73,7 +73,12 @@ pub(super) fn assign(
     for primary in primaries.iter().filter(|primary| primary.needed) {
         giving.give(primary.robot, primary.place, guards);
     }
-    let spare = primaries.iter().find(|primary| !primary.needed).copied();
+    let mut spare = primaries.iter().find(|primary| !primary.needed).copied();
+    if threat.at.distance(view.our_goal()) < settings.spare_stays
+        && let Some(beside) = spare.take()
+    {
+        giving.give(beside.robot, beside.place, Guards::Spare);
+    }
     memory.held = held.filter(|kept| giving.holds_on(*kept, &primaries));
     if let (Some(kept), None) = (held, memory.held)
         && let Some(robot) = view.our(kept.robot)

@@ -84,6 +84,9 @@ pub struct ThreatSettings {
     pub clear: f32,
     /// The primaries are in place within this, m: a body's radius.
     pub in_place: f32,
+    /// Where the first-level threat is nearer to our goal than this, m, a spare primary stays beside the
+    /// other one: a carrier turns or steps aside within the time in which it would come back.
+    pub spare_stays: f32,
     /// A defender changes its task, or two swap, for a path shorter by this, m: 0.4 s at 2 m/s.
     pub worth: f32,
 }
@@ -113,6 +116,7 @@ impl Default for ThreatSettings {
             latency: 0.1,
             clear: 0.25,
             in_place: RobotSpec::OURS.hull.radius,
+            spare_stays: 3.5,
             worth: 0.8,
         }
     }

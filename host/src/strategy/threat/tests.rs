@@ -221,3 +221,17 @@ fn a_wall_of_two_is_not_formed_by_paths_that_cross() {
     let paths: f32 = (1..3).map(|n| scene.ours[n].position.distance(place(&after, n as u8))).sum();
     assert!(places[0].distance(places[1]) > 0.15 && paths < 0.05, "{paths} m: {after:?}");
 }
+
+/// Another opponent waits for a cross.
+#[test]
+fn before_a_carrier_near_our_goal_the_spare_primary_stays_beside_the_other() {
+    let ours = [(-4.4, 0.0), (-3.3, 0.3), (-3.3, -0.3)];
+    let scene = view((-2.8, 0.6), &ours, &[(4.4, 0.0), (-2.7, 0.6), (-2.4, -1.2)]);
+    let last = |settings: &ThreatSettings| {
+        let defence = defend(&scene, all_robots(&scene), &mut Memory::default(), settings);
+        defence.assignments.last().unwrap().guards
+    };
+    assert_eq!(last(&ThreatSettings::default()), Guards::Spare);
+    let lent = last(&ThreatSettings { spare_stays: 1.0, ..ThreatSettings::default() });
+    assert!(matches!(lent, Guards::SecondLevel { blocks: Blocks::Shot, .. }), "{lent:?}");
+}
