@@ -292,7 +292,7 @@ fn matches(seconds: f64) {
 #[test]
 fn in_three_matches_every_decision_is_explained_by_its_own_problem() {
     let seconds = std::env::var("DECISIONS_SECONDS").map(|text| text.parse().expect("seconds of a match"));
-    matches(seconds.unwrap_or(60.0));
+    matches(seconds.unwrap_or(180.0));
 }
 
 #[derive(Default)]
