@@ -127,7 +127,7 @@ impl<'a> Brain<'a> {
     /// Whether another packet may be opened before the next step. Where steps are short the others are lost
     /// and counted. A teammate's leaves room for what the host sends in a step, so that no number of beacons
     /// keeps a command or HALT away, which every command repeats; a step that has to plan opens no snapshot,
-    /// and others little more than a whole one.
+    /// and others open little more than a whole one.
     pub(crate) fn takes_packet(&mut self, now: Instant, kind: PacketKind) -> bool {
         if !self.has_short_steps() {
             return true;

@@ -310,7 +310,7 @@ const PATH_AGE_MAX: u8 = 20;
 const COASTS_MAX: u8 = 2;
 /// Instructions that a step leaves for inputs, its message, a skill and planning a path: 40,000
 /// (docs/architecture.md §9) less what every step takes and what estimates err by. In ten matches of 60 s of
-/// six images (seeds 1 to 10) the worst steps took 36,692 to 38,167.
+/// six images (seeds 1 to 10) the worst steps took 36,929 to 39,853.
 const EFFORT: u32 = 21_000;
 /// Instructions that a plan among obstacles has besides the least, for a search.
 const EFFORT_OF_SEARCH: u32 = 1_500;

@@ -5,7 +5,7 @@
 //! sensor on the other side of the field does not move it there. With theirs, at the one whose front was at
 //! it when it vanished. Tracking leaves a ball that vanished at a robot's front there; where that robot is
 //! ours and its sensor does not detect the ball, the opponent beside it has taken it, or it lies where it
-//! was last seen; where it is theirs and the sensor of ours beside it detects the ball, ours has it. At a
+//! was last seen; where it is theirs and a robot of ours beside it detects the ball, ours has it. At a
 //! restart after a placement it lies where it was placed: the robot that brought it there hid it on the path,
 //! and the last visible place is metres off. Else it lies at its stop position. Without this a robot that
 //! must keep off the ball would approach it as soon as it is hidden, and one that backs off a ball it hides
