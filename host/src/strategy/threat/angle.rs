@@ -86,14 +86,24 @@ impl Opening {
             .then_some(Span { right: off - half, left: off + half })
     }
 
-    /// The gaps that these bodies leave open, from right to left. A body counts where it stands nearer than
+    /// The directions that these bodies cover, by their right ends. A body counts where it stands nearer than
     /// `within` m.
-    pub fn gaps(&self, bodies: impl Iterator<Item = Point<Attack>>, within: f32) -> Gaps {
-        let mut shadows: heapless::Vec<Span, BODIES_MAX> =
+    pub fn shadows(&self, bodies: impl Iterator<Item = Point<Attack>>, within: f32) -> Shadows {
+        let mut shadows: Shadows =
             bodies.filter_map(|body| self.shadow(body, within)).take(BODIES_MAX).collect();
         shadows.sort_unstable_by(|a, b| a.right.total_cmp(&b.right));
+        shadows
+    }
+
+    /// The gaps that these bodies leave open, from right to left; `within` as of [`Self::shadows`].
+    pub fn gaps(&self, bodies: impl Iterator<Item = Point<Attack>>, within: f32) -> Gaps {
+        self.gaps_between(&self.shadows(bodies, within))
+    }
+
+    /// The gaps between shadows, which are sorted by their right ends.
+    pub fn gaps_between(&self, shadows: &[Span]) -> Gaps {
         let (mut gaps, mut open) = (Gaps::new(), -self.half);
-        for shadow in &shadows {
+        for shadow in shadows {
             if shadow.right > open && open < self.half {
                 // One gap more than bodies at most, which is the capacity.
                 let _ = gaps.push(Span { right: open, left: shadow.right.min(self.half) });
@@ -107,6 +117,8 @@ impl Opening {
     }
 }
 
+/// Covered directions, by their right ends.
+pub type Shadows = heapless::Vec<Span, BODIES_MAX>;
 /// Open gaps, from right to left.
 pub type Gaps = heapless::Vec<Span, { BODIES_MAX + 1 }>;
 

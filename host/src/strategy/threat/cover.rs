@@ -11,11 +11,13 @@
 //! Division B's goal is wide (1 m): from far away not even three standing bodies cover all of it. The keeper
 //! then comes out as far as it may, and [`Cover::uncovered`] is the angle left to its reaction.
 
+mod keeper;
+
 use geometry::{Attack, Point, Vector};
 
 use super::super::view::View;
 use super::ThreatSettings;
-use super::angle::{Opening, distance_for, half_shadow, widest};
+use super::angle::{Opening, distance_for, half_shadow};
 use super::edge::Edge;
 
 /// Rounds after which a place that depends on its own distance moves by less than a millimetre.
@@ -217,33 +219,6 @@ impl<'v> Placing<'v> {
 }
 
 impl Cover {
-    /// The keeper's place while the primaries still move to their places: where it covers most of the gaps
-    /// that `bodies`, at their present places, leave of the open angle. The closer they are to their final
-    /// cover, the nearer to its own place.
-    pub fn keeper_meanwhile(
-        &self,
-        view: &View,
-        bodies: impl Iterator<Item = Point<Attack>>,
-        settings: &ThreatSettings,
-    ) -> Point<Attack> {
-        let gaps = self.opening.gaps(bodies, f32::INFINITY);
-        let then = self.opening.gaps(self.primaries.iter().copied(), f32::INFINITY);
-        let more = widest(&gaps) - widest(&then) - settings.open_worth;
-        if more <= 0.0 {
-            return self.keeper;
-        }
-        // Wide gaps count far more than narrow ones, but none exclusively: the widest one may change with
-        // noise.
-        let (weight, off) = gaps.iter().fold((0.0, 0.0), |(weight, off), gap| {
-            let cubed = gap.width() * gap.width() * gap.width();
-            (weight + cubed, off + cubed * gap.middle())
-        });
-        let edge = Edge::of(&view.field, settings.off_area);
-        let place = Placing { view, settings, opening: self.opening, edge, upper_post: self.upper_post };
-        let at = place.keeper(off / weight, 0.5 * widest(&gaps)).0;
-        self.keeper + (at - self.keeper) * (more * (1.0 / settings.meanwhile)).min(1.0)
-    }
-
     /// Place of a primary defender that is not needed: beside the one that is, on the side of the field's
     /// middle.
     pub fn spare_place(&self, edge: &Edge, settings: &ThreatSettings) -> Point<Attack> {

@@ -58,9 +58,13 @@ pub struct ThreatSettings {
     pub keeper_back: f32,
     /// Largest distance of the keeper from the goal, m: "staying near the goal"; half of division B's area.
     pub keeper_out: f32,
-    /// Difference of the widest gap now from that of the primaries at their places at which the keeper covers
-    /// only the present gaps, rad: the angle of a body seen from the halfway line.
-    pub meanwhile: f32,
+    /// While primaries are on their way the keeper moves by a metre for a widest gap that is this much
+    /// narrower, rad/m. 600 drills each of the carrier and the cross: 158, 163 and 161 goals of the carrier
+    /// with 0.07, 0.15 and 0.3, 223 with the weights before; 59 to 75 of the cross, and 85.
+    pub keeper_moves: f32,
+    /// And stands by a metre off its place beside them, rad/m: cross 75, 59 and 59 goals with 0.02, 0.05
+    /// and 0.1.
+    pub keeper_differs: f32,
     /// A placement of fewer bodies than now must cover this many times the angle that it needs.
     pub to_spare: f32,
     /// This near to the axis the choice of the nearer post is kept, m.
@@ -105,7 +109,8 @@ impl Default for ThreatSettings {
             shoulder: 0.105,
             keeper_back: 0.125,
             keeper_out: 0.5,
-            meanwhile: 0.05,
+            keeper_moves: 0.15,
+            keeper_differs: 0.05,
             to_spare: 1.1,
             axis: 0.15,
             near: 0.0,

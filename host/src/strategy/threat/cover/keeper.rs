@@ -1,0 +1,74 @@
+//! `keeper`: the keeper's place while primary defenders are on their way to theirs. Attack frame, m, rad.
+//!
+//! The paper's three cases place the keeper beside primaries that are in place. A carrier near our area moves
+//! faster than they do, and what the paper leaves to a primary is then open.
+
+use geometry::{Attack, Point, math};
+
+use super::super::super::view::View;
+use super::super::ThreatSettings;
+use super::super::angle::{Opening, Shadows, Span, widest};
+use super::super::danger::SHOT_SPEED_M_S;
+use super::super::edge::Edge;
+use super::{Cover, Placing};
+
+/// Directions from the threat in which the keeper may stand, to either side of the middle.
+const RAYS: i8 = 12;
+
+impl Cover {
+    /// The keeper's place between `bodies`, ours at their present places: of all places the one from which the
+    /// widest gap now, and the widest gap once the primaries are in place, are together the least, less what
+    /// it takes to go there. Where the bodies leave no more than the primaries will, the paper's place.
+    pub fn keeper_meanwhile(
+        &self,
+        view: &View,
+        bodies: impl Iterator<Item = Point<Attack>>,
+        settings: &ThreatSettings,
+    ) -> Point<Attack> {
+        let opening = &self.opening;
+        let now = opening.shadows(bodies, f32::INFINITY);
+        let then = opening.shadows(self.primaries.iter().copied(), f32::INFINITY);
+        let [open_now, open_then] = [&now, &then].map(|shadows| widest(&opening.gaps_between(shadows)));
+        if open_now <= open_then + settings.open_worth {
+            return self.keeper;
+        }
+        let edge = Edge::of(&view.field, settings.off_area);
+        let place = Placing { view, settings, opening: *opening, edge, upper_post: self.upper_post };
+        let stands = view.our(view.keeper).map_or(self.keeper, |keeper| keeper.position);
+        let cost = |at: Point<Attack>| {
+            let reach =
+                opening.shadow(at, f32::INFINITY).map(|body| widened(body, place.distance(at), settings));
+            [&now, &then].map(|shadows| widest_beside(opening, shadows, reach)).iter().sum::<f32>()
+                + settings.keeper_moves * at.distance(stands)
+                + settings.keeper_differs * at.distance(self.keeper)
+        };
+        let places = (-RAYS..=RAYS).flat_map(|ray| {
+            let off = opening.half * f32::from(ray) / f32::from(RAYS);
+            let [back, front] = [0.0, math::FRAC_PI_2].map(|half| place.keeper(off, half).0);
+            [back, back + (front - back) * 0.5, front]
+        });
+        let planned = (self.keeper, cost(self.keeper));
+        places
+            .map(|at| (at, cost(at)))
+            .fold(planned, |best, next| if next.1 < best.1 { next } else { best })
+            .0
+    }
+}
+
+/// The directions that a keeper covers with the way that it drives while a shot comes from `distance`.
+fn widened(body: Span, distance: f32, settings: &ThreatSettings) -> Span {
+    let seconds = (distance / SHOT_SPEED_M_S - settings.latency).max(0.0);
+    let more = 0.5 * settings.acceleration * seconds * seconds / distance.max(f32::EPSILON);
+    Span { right: body.right - more, left: body.left + more }
+}
+
+/// The widest gap between shadows and the keeper's, rad.
+fn widest_beside(opening: &Opening, shadows: &Shadows, keeper: Option<Span>) -> f32 {
+    let mut all = shadows.clone();
+    if let Some(keeper) = keeper {
+        let at = all.partition_point(|shadow| shadow.right < keeper.right);
+        // Ours are half of the bodies that fit.
+        let _ = all.insert(at, keeper);
+    }
+    widest(&opening.gaps_between(&all))
+}
