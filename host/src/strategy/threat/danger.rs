@@ -12,12 +12,10 @@ use super::angle::{BODY, Opening, widest};
 use super::cover::Cover;
 use super::edge::Edge;
 use super::receiving::{Because, FirstLevel};
-use super::{Memory, ThreatSettings, legal};
+use super::{Memory, SHOT_SPEED_M_S, ThreatSettings, legal};
 
 /// Passes arrive with this speed, m/s, at which a receiver can shoot at once.
 const PASS_ARRIVAL_M_S: f32 = 2.5;
-/// Fastest shot, m/s: the rules' 6.5 less a kicker's error.
-pub(super) const SHOT_SPEED_M_S: f32 = 6.2;
 
 /// An opponent as a second-level threat.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -32,6 +32,9 @@ use receiving::FirstLevel;
 
 pub use legal::{legal, legal_for};
 
+/// Fastest shot, m/s: the rules' 6.5 less a kicker's error.
+const SHOT_SPEED_M_S: f32 = 6.2;
+
 /// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThreatSettings {

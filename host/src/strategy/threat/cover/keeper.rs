@@ -6,19 +6,18 @@
 use geometry::{Attack, Point, math};
 
 use super::super::super::view::View;
-use super::super::ThreatSettings;
 use super::super::angle::{Opening, Shadows, Span, widest};
-use super::super::danger::SHOT_SPEED_M_S;
 use super::super::edge::Edge;
+use super::super::{SHOT_SPEED_M_S, ThreatSettings};
 use super::{Cover, Placing};
 
 /// Directions from the threat in which the keeper may stand, to either side of the middle.
 const RAYS: i8 = 12;
 
 impl Cover {
-    /// The keeper's place between `bodies`, ours at their present places: of all places the one from which the
-    /// widest gap now, and the widest gap once the primaries are in place, are together the least, less what
-    /// it takes to go there. Where the bodies leave no more than the primaries will, the paper's place.
+    /// The keeper's place between `bodies`, ours at their present places: where the widest gap now and the
+    /// widest gap once the primaries are in place are together the least, with what it costs to go there.
+    /// Where the bodies leave no more than the primaries will, the paper's place.
     pub fn keeper_meanwhile(
         &self,
         view: &View,
@@ -35,23 +34,45 @@ impl Cover {
         let edge = Edge::of(&view.field, settings.off_area);
         let place = Placing { view, settings, opening: *opening, edge, upper_post: self.upper_post };
         let stands = view.our(view.keeper).map_or(self.keeper, |keeper| keeper.position);
-        let cost = |at: Point<Attack>| {
-            let reach =
-                opening.shadow(at, f32::INFINITY).map(|body| widened(body, place.distance(at), settings));
-            [&now, &then].map(|shadows| widest_beside(opening, shadows, reach)).iter().sum::<f32>()
-                + settings.keeper_moves * at.distance(stands)
-                + settings.keeper_differs * at.distance(self.keeper)
-        };
+        let choice = Choice { cover: self, place, shadows: [now, then], stands };
+        choice.best()
+    }
+}
+
+/// The keeper's places, and what they are compared by.
+struct Choice<'c> {
+    cover: &'c Cover,
+    place: Placing<'c>,
+    /// What primaries cover now, and at their places.
+    shadows: [Shadows; 2],
+    /// Where the keeper is, m.
+    stands: Point<Attack>,
+}
+
+impl Choice<'_> {
+    fn best(&self) -> Point<Attack> {
         let places = (-RAYS..=RAYS).flat_map(|ray| {
-            let off = opening.half * f32::from(ray) / f32::from(RAYS);
-            let [back, front] = [0.0, math::FRAC_PI_2].map(|half| place.keeper(off, half).0);
+            let off = self.cover.opening.half * f32::from(ray) / f32::from(RAYS);
+            let [back, front] = [0.0, math::FRAC_PI_2].map(|half| self.place.keeper(off, half).0);
             [back, back + (front - back) * 0.5, front]
         });
-        let planned = (self.keeper, cost(self.keeper));
+        let planned = (self.cover.keeper, self.cost(self.cover.keeper));
         places
-            .map(|at| (at, cost(at)))
+            .map(|at| (at, self.cost(at)))
             .fold(planned, |best, next| if next.1 < best.1 { next } else { best })
             .0
+    }
+
+    /// The widest gaps with the keeper there, now and later, and its way, rad.
+    fn cost(&self, at: Point<Attack>) -> f32 {
+        let (opening, settings) = (&self.cover.opening, self.place.settings);
+        let covers =
+            opening.shadow(at, f32::INFINITY).map(|body| widened(body, self.place.distance(at), settings));
+        let [now, then] = &self.shadows;
+        widest_beside(opening, now, covers)
+            + widest_beside(opening, then, covers)
+            + settings.keeper_moves * at.distance(self.stands)
+            + settings.keeper_differs * at.distance(self.cover.keeper)
     }
 }
 
