@@ -82,9 +82,11 @@ impl Source {
         Self { on, _alive: alive }
     }
 
+    /// Starts or stops sending, at the returned time or later: the thread may be held up in between.
     fn set(&self, on: bool) -> Instant {
+        let at = Instant::now();
         self.on.store(on, Ordering::Relaxed);
-        Instant::now()
+        at
     }
 }
 
