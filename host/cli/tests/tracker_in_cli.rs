@@ -111,14 +111,13 @@ fn vision_stands_in_for_a_silent_tracker_until_it_has_sent_for_half_a_second() {
     let wanted = format!("{tracker},other");
     let robots = ["control", "--headless", "--robots", "udp://127.0.0.1:9", "--insecure-zero-key"];
     let more = ["--vision", &vision, "--referee", &free(), "--tracker", &own, "--tracker-in", &wanted];
-    let began = Instant::now();
     let mut control = Running::start(&[&robots[..], &more[..]].concat());
     let _camera = Source::start(vision, seen);
     ball_is_at(&output, -TRACKED_Y_M);
     let other = Source::start(tracker, tracked);
     control.wait_for("the field comes from tracker other");
     ball_is_at(&output, TRACKED_Y_M);
-    let silent = other.set(false) - began;
+    let silent = other.set(false) - control.began;
     // A loaded machine may have delayed a packet before; the last change is the one that counts.
     let mut at = control.wait_for("the field comes from vision").0;
     while at < silent {
@@ -126,7 +125,7 @@ fn vision_stands_in_for_a_silent_tracker_until_it_has_sent_for_half_a_second() {
     }
     ball_is_at(&output, -TRACKED_Y_M);
     assert!(at + EVERY >= silent + SILENCE, "after {:?} of silence", at.saturating_sub(silent));
-    let speaks = other.set(true) - began;
+    let speaks = other.set(true) - control.began;
     let at = control.wait_for("the field comes from tracker other").0;
     assert!(at >= speaks + STEADY, "{:?} after it came back", at.saturating_sub(speaks));
     ball_is_at(&output, TRACKED_Y_M);

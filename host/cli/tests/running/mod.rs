@@ -32,6 +32,9 @@ pub(crate) fn free() -> String {
 /// A running verb; its stderr comes line by line. Ended when dropped.
 pub(crate) struct Running {
     pub(crate) process: Child,
+    /// The lines' times count from here.
+    #[allow(dead_code, reason = "each test program takes what it needs of it")]
+    pub(crate) began: Instant,
     lines: Receiver<(Duration, String)>,
     pub(crate) received: Vec<(Duration, String)>,
 }
@@ -57,7 +60,7 @@ impl Running {
                 }
             }
         });
-        Self { process, lines, received: Vec::new() }
+        Self { process, began, lines, received: Vec::new() }
     }
 
     /// Waits for a line that contains `description`.
