@@ -62,11 +62,11 @@ pub struct ThreatSettings {
     /// Largest distance of the keeper from the goal, m: "staying near the goal"; half of division B's area.
     pub keeper_out: f32,
     /// While primaries are on their way the keeper moves by a metre for a widest gap that is this much
-    /// narrower, rad/m. 600 drills each of the carrier and the cross: 158, 163 and 161 goals of the carrier
-    /// with 0.07, 0.15 and 0.3, 223 with the weights before; 59 to 75 of the cross, and 85.
+    /// narrower, rad/m. 600 tries each of the drills carrier and cross (seed 9401; the next weight at 0.02):
+    /// 158 and 163 goals of the carrier with 0.07 and 0.15, of the cross 75 and 59; before 223 and 85.
     pub keeper_moves: f32,
-    /// And stands by a metre off its place beside them, rad/m: cross 75, 59 and 59 goals with 0.02, 0.05
-    /// and 0.1.
+    /// It stands a metre off its planned place for a gap that is this much narrower, rad/m: with 0.02, 0.05
+    /// and 0.1 (the weight before at 0.15) 163, 170 and 174 goals of the carrier, 59, 52 and 59 of the cross.
     pub keeper_differs: f32,
     /// A placement of fewer bodies than now must cover this many times the angle that it needs.
     pub to_spare: f32,
