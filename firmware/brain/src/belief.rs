@@ -19,7 +19,7 @@ pub mod pose;
 mod random;
 pub mod received;
 
-use geometry::{Field, GoalEnd, Point, Pose, Vector, math};
+use geometry::{Field, GoalEnd, Point, Pose, Segment, Vector, math};
 use motion::rolling::RollingBall;
 use motion::trajectory::FreeLimits;
 use protocol::host::{DriveLimits, RuleRole};
@@ -61,6 +61,11 @@ pub struct BelievedBall {
 }
 
 impl BelievedBall {
+    /// Its way from where it is to where it stops.
+    pub fn path(&self) -> Segment<Field> {
+        Segment::new(self.position, self.rest)
+    }
+
     /// Whether it is slow enough to count as stationary.
     pub fn is_at_rest(&self) -> bool {
         self.velocity.norm() < REST_SPEED

@@ -45,4 +45,5 @@ pub(crate) const SPEC: BodySpec = BodySpec {
     // An arm's length more than touching.
     disputed_within: 0.25,
     doubt_steps: 5,
+    meets_rolling_balls: false,
 };

@@ -96,6 +96,8 @@ pub struct BodySpec {
     pub disputed_within: f32,
     /// Steps for which a doubt about the case must last to abort it: a fifth of a second.
     pub doubt_steps: u8,
+    /// It meets a rolling ball on its way, and does not wait where it stops.
+    pub meets_rolling_balls: bool,
 }
 
 /// Properties of that league's robots.

@@ -113,4 +113,5 @@ pub(crate) const SPEC: BodySpec = BodySpec {
     opponent_holds_within: contact::HELD_WITHIN,
     disputed_within: 0.15,
     doubt_steps: 20,
+    meets_rolling_balls: true,
 };

@@ -173,7 +173,8 @@ impl Brain<'_> {
 
     /// What is to be played, and what that rests on.
     fn decide(&self, now: Instant, problem: &Problem, holder: Option<RobotId>) -> (Decision, Grounds) {
-        let proposed = self.hint(now).and_then(|hint| retrieval::accept(&self.base, problem, hint, holder));
+        let proposed = (self.hint(now))
+            .and_then(|hint| retrieval::accept(&self.base, problem, hint, holder, &self.belief));
         let (decision, grounds) = match proposed {
             Some(decision) => (decision, Grounds::Proposed),
             None if self.ball_is_nobodys(holder) => (Decision::NoCase, Grounds::BallRolls),

@@ -1,12 +1,13 @@
 //! `monitor`: monitoring of a running case by every robot involved (docs/architecture.md §5.3, docs/papers.md
 //! R27).
 //!
-//! Before the first touch: ball in the case's scope, path free. After it: no opponent on the ball, and the
+//! Before the first touch: ball in the case's scope, path free. On wheels, which meet a rolling ball on its
+//! way, it is in scope while that way leads through it. After the touch: no opponent on the ball, and the
 //! ball not stopped where no robot of the case expects it. A doubt must last a fifth of a second before it
 //! aborts: an opponent at the edge of a trapezoid shall not end a gameplay by swaying. What is believed with
 //! an error is doubted only beyond two standard deviations of it.
 
-use casebase::{PointMm, RetrievalSettings};
+use casebase::{LegKind, PointMm, RetrievalSettings};
 use geometry::{Field, Segment, Vector, math};
 use protocol::team::AbortReason;
 
@@ -40,7 +41,9 @@ impl Monitor {
 }
 
 fn before_touch(scene: &ActionScene<'_>, settings: &RetrievalSettings) -> Option<AbortReason> {
-    let ball: PointMm = scene.belief.ball?.rest.into();
+    let (ball, meets) = (scene.belief.ball?, scene.body.spec().meets_rolling_balls);
+    let ball: PointMm =
+        if meets { ball.path().closest_to(scene.ball_used().into()).into() } else { ball.rest.into() };
     if !scene.case.ball_in_scope(ball) && !may_be_in_scope(scene, ball) {
         return Some(AbortReason::BallOutOfScope);
     }
@@ -50,6 +53,8 @@ fn before_touch(scene: &ActionScene<'_>, settings: &RetrievalSettings) -> Option
         let _room = opponents.push(PointMm::from(*opponent));
     }
     casebase::blocked_leg(&scene.case, scene.base, scene.ball_used(), &opponents, settings)
+        // On wheels a shot takes the gap that there is when it is made.
+        .filter(|blocked| !(meets && matches!(blocked.leg.kind, LegKind::Kick(_))))
         .filter(|blocked| blocked.inside_mm >= CERTAIN_SIGMAS * 1000.0 * scene.belief.opponent_sigma())
         .map(|_| AbortReason::PathBlocked)
 }

@@ -47,12 +47,13 @@ pub fn problem(
 }
 
 /// The host's proposal as a decision: its case exists, takes as many robots as it names, and all of them are
-/// present, each once.
+/// present, each once. It is for the ball as it will be had: where its way comes nearest to the case's.
 pub fn accept(
     base: &CaseBase<'_>,
     problem: &Problem,
     hint: &Hint,
     holder: Option<RobotId>,
+    belief: &Belief,
 ) -> Option<Decision> {
     let case = base.case(hint.case)?;
     let present = |id: &RobotId| problem.teammates.iter().any(|(teammate, _)| teammate == id);
@@ -61,7 +62,8 @@ pub fn accept(
     let getter = hint.robots.get(case.getter().index()).copied();
     let fits = case.robots().count() == hint.robots.len() && case.defending() == problem.defending;
     (all && fits && (holder.is_none() || holder == getter)).then(|| {
-        Decision::Play(Play { case: hint.case, ball: problem.ball.into(), robots: hint.robots.clone() })
+        let ball = belief.ball.map_or(problem.ball, |ball| ball.path().closest_to(case.ball().into()).into());
+        Decision::Play(Play { case: hint.case, ball: ball.into(), robots: hint.robots.clone() })
     })
 }
 
