@@ -107,10 +107,12 @@ impl Brain<'_> {
     }
 
     /// Present for election and retrieval: without a host always, else under `Gameplay` while the ball is in
-    /// play.
+    /// play, and under any order once its part in a running case is done.
     fn is_available(&self, now: Instant) -> bool {
         self.host.as_ref().is_none_or(|host| {
-            let plays = matches!(host.directive(now), Some(Directive::Gameplay { .. }));
+            let directive = host.directive(now);
+            let done = directive.is_some() && self.cycle.progress == Progress::WaitEnd { finished: true };
+            let plays = matches!(directive, Some(Directive::Gameplay { .. })) || done;
             plays && host.phase() == Some(Phase::Run) && !self.belief.game.double_touch_blocked
         })
     }
