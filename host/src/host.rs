@@ -35,7 +35,7 @@ use crate::robot_test::RobotTest;
 use crate::strategy::counters::Bookkeeper;
 use crate::strategy::proposal::proposal;
 use crate::strategy::stakes::{Stakes, time_left};
-use crate::strategy::view::{CasePass, RobotSet, ViewGame};
+use crate::strategy::view::{CaseNext, RobotSet, ViewGame};
 use crate::strategy::{Coach, Flip, Orders, View};
 use crate::tracking::HiddenBall;
 use crate::tracking::{self, Tracker};
@@ -430,8 +430,8 @@ impl Host {
         knowing
     }
 
-    /// The next pass of the case that our robots play, where the tactics include the bridge.
-    fn proposed(&self, now: Instant, flip: Flip) -> Option<CasePass> {
+    /// What the case that our robots play does next with the ball, where the tactics include the bridge.
+    fn proposed(&self, now: Instant, flip: Flip) -> Option<CaseNext> {
         if !self.settings.tactics.bridge {
             return None;
         }

@@ -1,6 +1,6 @@
-//! `proposal`: the pass proposed by the case that our robots play: the cycle that they report, looked up in
-//! the case base that they carry (docs/papers.md §8: the case is the intent). From the field to the attack
-//! frame, m.
+//! `proposal`: what the case that our robots play does next with the ball: the cycle that they report, looked
+//! up in the case base that they carry (docs/papers.md §8: the case is the intent). From the field to the
+//! attack frame, m.
 
 use casebase::{CaseBase, CaseRobot, LegKind};
 use protocol::RobotId;
@@ -8,16 +8,16 @@ use protocol::team::{Beacon, CycleState, Progress};
 use rules::League;
 
 use super::Flip;
-use super::view::CasePass;
+use super::view::{CaseNext, CasePass};
 
 /// The cases that come with a league; cases of robots with another case base cannot be looked up.
 pub fn cases_of(league: League) -> CaseBase<'static> {
     case_library::league(league.name()).map_or_else(CaseBase::default, case_library::League::base)
 }
 
-/// The pass of the newest cycle that robots with this case base report. `None` where they play no case, where
-/// its next leg is no pass, or where its passer is not, or no longer, at it.
-pub(crate) fn proposal(base: &CaseBase<'_>, reported: &[(RobotId, &Beacon)], flip: Flip) -> Option<CasePass> {
+/// The next leg of the newest cycle that robots with this case base report. `None` where they play no case,
+/// or where its kicker is not, or no longer, at it.
+pub(crate) fn proposal(base: &CaseBase<'_>, reported: &[(RobotId, &Beacon)], flip: Flip) -> Option<CaseNext> {
     let reported = || reported.iter().copied().filter(|(_, beacon)| beacon.case_base == base.hash());
     let newest = reported().filter_map(|(_, beacon)| beacon.cycle.as_ref()).fold(None, newer)?;
     let play = newest.play()?;
@@ -36,15 +36,15 @@ pub(crate) fn proposal(base: &CaseBase<'_>, reported: &[(RobotId, &Beacon)], fli
     let player = |part: CaseRobot| play.robots.get(part.index()).copied();
     let leg =
         case.legs(play.ball.into()).find(|leg| player(leg.robot).is_some_and(|id| leg.action >= done(id)))?;
-    let LegKind::Pass(to) = leg.kind else { return None };
     let passer = player(leg.robot)?;
     matches!(progress(passer), Some(Progress::Adapt { .. } | Progress::Execute { .. })).then_some(())?;
-    Some(CasePass {
+    let LegKind::Pass(to) = leg.kind else { return Some(CaseNext::Kick(passer)) };
+    Some(CaseNext::Pass(CasePass {
         case: play.case,
         passer: (passer, leg.robot),
         receiver: (player(to)?, to),
         at: flip.point(leg.end()),
-    })
+    }))
 }
 
 fn newer<'s>(known: Option<&'s CycleState>, other: &'s CycleState) -> Option<&'s CycleState> {
@@ -113,7 +113,9 @@ mod tests {
                 let reported: Vec<_> = reported.iter().map(|(id, beacon)| (*id, beacon)).collect();
                 proposal(&base, &reported, Flip::defending(GoalEnd::Positive))
             };
-            let found = find(&reported(Progress::Execute { done: 1 })).unwrap();
+            let Some(CaseNext::Pass(found)) = find(&reported(Progress::Execute { done: 1 })) else {
+                panic!("case {id} is at its pass")
+            };
             assert_eq!(found.case, CaseId(id));
             assert_eq!((found.passer, found.receiver), ((of(getter), getter), (of(to), to)), "case {id}");
             let at = case.adapted(to, casebase::PointMm { x: 0, y: 0 });
@@ -122,7 +124,7 @@ mod tests {
             assert!(found.at.distance(by_hand) < 1e-3, "case {id}: {found:?}, by hand {by_hand:?}");
             // Once it is done the proposal is another one, or none.
             assert!(
-                find(&reported(Progress::Execute { done: 2 })).is_none_or(|next| next != found),
+                find(&reported(Progress::Execute { done: 2 })) != Some(CaseNext::Pass(found)),
                 "case {id}"
             );
             // A robot that the host called away, or that has ended, is not a passer of any case.
@@ -133,6 +135,26 @@ mod tests {
                 beacon.case_base ^= 1;
             }
             assert_eq!(find(&others), None);
+        }
+        assert!(seen > 4, "{seen} such cases");
+    }
+
+    #[test]
+    fn a_case_that_begins_with_a_shot_has_it_next() {
+        let base = case_library::division_b();
+        let first = |id: &CaseId| base.case(*id)?.legs(WirePoint { x: 0, y: 0 }.into()).next();
+        let of_shots = (0..base.len() as u16)
+            .map(CaseId)
+            .filter(|id| first(id).is_some_and(|leg| matches!(leg.kind, LegKind::Kick(_))));
+        let mut seen = 0;
+        for id in of_shots {
+            let case = base.case(id).unwrap();
+            let by = RobotId::new([3, 1, 2, 4][first(&id).unwrap().robot.index()]).unwrap();
+            let state = cycle(7, id.0, case.robots().count());
+            let adapts = beacon(base.hash(), state, Progress::Adapt { arrived: false });
+            let found = proposal(&base, &[(by, &adapts)], Flip::defending(GoalEnd::Negative));
+            assert_eq!(found, Some(CaseNext::Kick(by)), "case {id}");
+            seen += 1;
         }
         assert!(seen > 4, "{seen} such cases");
     }

@@ -17,7 +17,7 @@ use super::clear::{self, Clearance, Release, clearance, given_away};
 use super::pass::bridge::{RADIUS, refine};
 use super::pass::shot::shot;
 use super::pass::{Kicks, Offer, PassScene, PassSearch, Rating};
-use super::view::{CasePass, ROBOTS_MAX, View};
+use super::view::{CaseNext, CasePass, ROBOTS_MAX, View};
 
 /// An opponent this near the ball, m, disputes it, or presses its owner.
 const CONTESTED_WITHIN_M: f32 = 0.25;
@@ -174,7 +174,7 @@ pub fn rate(
     }
     if let Some(cast) = of_cases.retrieved
         && let Some(release) = release
-        && let Some(worth) = case_worth(view, kicks, who, &release, &cast)
+        && let Some(worth) = step_worth(view, kicks, who, &release, &cast.step)
     {
         add(&mut list, Action::Case(cast), worth);
     }
@@ -218,23 +218,35 @@ pub fn rate_again(
         Action::Clear { at, kick } => {
             (*action, clear::worth_again(view, kicks, view.our(who)?, from, (at, kick)))
         }
-        Action::Case(cast) => (*action, case_worth(view, kicks, who, &release, &cast)?),
+        Action::Case(cast) => (*action, step_worth(view, kicks, who, &release, &cast.step)?),
         Action::PlayOn => (*action, play_on(view, from)),
     };
     Some(Rated { action, worth })
 }
 
+/// What the next step of the case that is played is worth, if it is a kick of `who`.
+pub fn next_worth(view: &View, kicks: &Kicks, who: RobotId, from: Point<Attack>) -> Option<f32> {
+    let step = match view.proposal? {
+        CaseNext::Pass(pass) if pass.passer.0 == who => {
+            CaseStep::Pass { from, receiver: pass.receiver.0, at: pass.at }
+        }
+        CaseNext::Kick(robot) if robot == who => CaseStep::Shot { from },
+        CaseNext::Pass(_) | CaseNext::Kick(_) => return None,
+    };
+    step_worth(view, kicks, who, &Release::of(view, kicks, view.our(who)?, from), &step)
+}
+
 /// A case is worth what its first step with the ball is worth, less what an opponent who is first at the ball
 /// takes of it; `None` where its receiver is gone.
-fn case_worth(
+fn step_worth(
     view: &View,
     kicks: &Kicks,
     who: RobotId,
     release: &Release<'_>,
-    cast: &CastCase,
+    step: &CaseStep,
 ) -> Option<f32> {
     let half = view.field.length * 0.5;
-    Some(match cast.step {
+    Some(match *step {
         CaseStep::Pass { from, receiver, at } => {
             let scene = PassScene::of(view, kicks, from, Some(who), view.our(receiver)?).keeping();
             release.worth(at, pass_worth(view, from, &scene.rate(at)))
@@ -382,7 +394,7 @@ mod tests {
         let cast = |step| CastCase { case: CaseId(3), robots: [Some(who), None, None, None], step };
         let at = Point::new(3.0, 1.6);
         let release = Release::of(&seen, &kicks, &seen.ours[1], from);
-        let worth = |step| case_worth(&seen, &kicks, who, &release, &cast(step));
+        let worth = |step| step_worth(&seen, &kicks, who, &release, &step);
         let pass = CaseStep::Pass { from, receiver: seen.ours[2].id, at };
         let scene = PassScene::of(&seen, &kicks, from, Some(who), &seen.ours[2]).keeping();
         assert_eq!(worth(pass), Some(release.worth(at, pass_worth(&seen, from, &scene.rate(at)))));
@@ -402,14 +414,32 @@ mod tests {
     }
 
     #[test]
+    fn a_running_case_is_worth_its_next_kick_if_that_is_this_robots() {
+        let seen = view((2.0, 0.0), &[(-4.4, 0.0), (1.9, 0.0), (3.0, 1.8)], &WALL);
+        let (kicks, from) = (kicks(), Point::new(2.0, 0.0));
+        let part = |part, robot: usize| (seen.ours[robot].id, CaseRobot::new(part).unwrap());
+        let (passer, receiver, at) = (part(0, 1), part(1, 2), Point::new(3.0, 1.6));
+        let pass = CaseNext::Pass(CasePass { case: CaseId(1), passer, receiver, at });
+        let next = |next, who| next_worth(&seen.clone().proposing(next), &kicks, who, from);
+        let listed = list((3.0, 1.8), &WALL, Some(at));
+        let of_case =
+            listed.iter().find(|rated| matches!(rated.action, Action::OfCase { .. })).unwrap().worth;
+        let worth = next(Some(pass), passer.0).unwrap();
+        assert!(worth <= of_case && worth > of_case - 0.1, "at its own place {worth}, refined {of_case}");
+        assert_eq!(next(Some(pass), receiver.0), None, "the receiver's next kick is not known yet");
+        let release = Release::of(&seen, &kicks, &seen.ours[1], from);
+        let shot = step_worth(&seen, &kicks, passer.0, &release, &CaseStep::Shot { from });
+        assert_eq!(next(Some(CaseNext::Kick(passer.0)), passer.0), shot);
+        assert_eq!(next(None, passer.0), None);
+    }
+
+    #[test]
     fn a_case_whose_ball_an_opponent_reaches_first_is_worth_less() {
         let worth = |near: (f32, f32)| {
             let seen = view((2.0, 0.0), &[(-4.4, 0.0), (1.6, 0.0), (3.0, 1.8)], &[(4.4, 0.0), near]);
             let (kicks, from, who) = (kicks(), Point::new(2.0, 0.0), seen.ours[1].id);
             let step = CaseStep::Pass { from, receiver: seen.ours[2].id, at: Point::new(3.0, 1.6) };
-            let cast =
-                CastCase { case: CaseId(3), robots: [Some(who), Some(seen.ours[2].id), None, None], step };
-            case_worth(&seen, &kicks, who, &Release::of(&seen, &kicks, &seen.ours[1], from), &cast).unwrap()
+            step_worth(&seen, &kicks, who, &Release::of(&seen, &kicks, &seen.ours[1], from), &step).unwrap()
         };
         let (first, later) = (worth((2.0, -0.2)), worth((2.0, -2.5)));
         assert!(first < 0.8 * later, "{first} {later}");

@@ -32,6 +32,15 @@ pub struct CasePass {
     pub at: Point<Attack>,
 }
 
+/// What comes next for the ball in a case that is being played.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CaseNext {
+    /// A pass.
+    Pass(CasePass),
+    /// A kick by this robot.
+    Kick(RobotId),
+}
+
 /// Turns between the field and the attack frame: by half a turn, or not at all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flip {
@@ -187,8 +196,8 @@ pub struct View {
     pub in_play: RobotSet,
     /// Our robots whose sensors feel the ball.
     pub contact: RobotSet,
-    /// The next pass of that case, where the tactics include the bridge between the papers.
-    pub proposal: Option<CasePass>,
+    /// What that case does next with the ball, where the tactics include the bridge between the papers.
+    pub proposal: Option<CaseNext>,
     /// Our robots that carry the case base that the host knows.
     pub knows_cases: RobotSet,
     /// Between the attack frame and the field.
@@ -281,9 +290,17 @@ impl View {
         Self { theirs_allowed: robots, ..self }
     }
 
-    /// The same, with the next pass of the case that robots play.
-    pub fn proposing(self, proposal: Option<CasePass>) -> Self {
+    /// The same, with what the case that robots play does next with the ball.
+    pub fn proposing(self, proposal: Option<CaseNext>) -> Self {
         Self { proposal, ..self }
+    }
+
+    /// The pass of `who` that is next in the case that is played.
+    pub fn proposed_pass(&self, who: RobotId) -> Option<CasePass> {
+        match self.proposal {
+            Some(CaseNext::Pass(pass)) if pass.passer.0 == who => Some(pass),
+            _ => None,
+        }
     }
 
     /// The same, without these robots of ours.

@@ -235,7 +235,7 @@ impl Coach {
     /// The next pass of the case that `who` plays, refined near the case's place for it, if it is then likely
     /// to arrive.
     fn of_the_case(&self, view: &View, who: RobotId, ball: &ViewBall) -> Option<Action> {
-        let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who)?;
+        let pass = view.proposed_pass(who).filter(|_| self.tactics.bridge)?;
         let receiver = pass.receiver.0;
         let teammate = view.our(receiver).filter(|_| !self.roles.defenders.contains(&Some(receiver)))?;
         let scene = PassScene::of(view, self.passes.kicks(), ball.position, Some(who), teammate);

@@ -219,13 +219,20 @@ impl Coach {
             None => plays_case.then_some((Action::PlayOn, from)),
         };
         let again = again.and_then(|(action, at)| {
-            let again = rated::rate_again(view, self.passes.kicks(), who, at, &action)?;
+            let kicks = self.passes.kicks();
+            let mut again = rated::rate_again(view, kicks, who, at, &action)?;
+            if plays_case
+                && action == Action::PlayOn
+                && let Some(next) = rated::next_worth(view, kicks, who, at)
+            {
+                again.worth = again.worth.max(next);
+            }
             // Kick and volley stay as ordered while the ball is where it was.
             Some(if there.is_some() { again.kicked_as(&action) } else { again })
         });
         let defenders = self.roles.defenders;
         let receives = |id| !defenders.contains(&Some(id));
-        let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who);
+        let pass = view.proposed_pass(who).filter(|_| self.tactics.bridge);
         let may = |id| id == who || plan.free.contains(&id) && id != view.keeper && receives(id);
         let retrieved = (self.tactics.bridge && !view.in_play.has(who))
             .then(|| case_candidate::retrieve(view, &self.open_play.rated.cases, who, from, may))

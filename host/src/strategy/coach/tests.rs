@@ -6,7 +6,7 @@ use crate::strategy::support;
 use crate::strategy::threat::Guards;
 use crate::strategy::view::ViewBall;
 use crate::strategy::view::tests::view;
-use crate::strategy::view::{CasePass, RobotSet};
+use crate::strategy::view::{CaseNext, CasePass, RobotSet};
 use casebase::CaseRobot;
 use geometry::{Attack, Point, Vector};
 use protocol::CaseId;
@@ -415,7 +415,7 @@ fn with_the_bridge_a_running_cases_pass_goes_near_its_place_to_its_receiver() {
         let seen = view((2.0, 0.0), &ours, &closed);
         let part = |part, robot: usize| (seen.ours[robot].id, CaseRobot::new(part).unwrap());
         let pass = CasePass { case: CaseId(12), passer: part(0, passer), receiver: part(1, 5), at };
-        let seen = seen.proposing(Some(pass));
+        let seen = seen.proposing(Some(CaseNext::Pass(pass)));
         let tactics = Tactics { bridge, ..Tactics::ROUND_1 };
         Coach::new(Team::Ours, tactics, League::DivisionB).decide(&seen)
     };
