@@ -50,7 +50,7 @@ fn candidates(current: &Variant, explored: &Played, edits: &[(&str, Change)]) ->
     edits.iter().map(candidate).collect()
 }
 
-/// Matches of the authored library, and what edits of its two most frequent cases make of them.
+/// Matches of the authored library, and what edits of its most frequent cases make of them.
 fn round(player: &mut impl for<'u> Player<MatchUnit<'u>>) -> String {
     let current = Variant::new(authored()).unwrap();
     let settings = settings(false);
@@ -62,6 +62,8 @@ fn round(player: &mut impl for<'u> Player<MatchUnit<'u>>) -> String {
         ("front/shot-and-decoy", Change::Forget),
         ("front-side/near-post", Change::BallScope([400, 400])),
         ("center/kick-off", Change::Forget),
+        ("center/one-two", Change::Forget),
+        ("side/up-the-line", Change::Forget),
     ];
     let mut tried = candidates(&current, &explored, &edits);
     Matches::play_pairs(&mut run, &explored, &mut tried, 0..usize::MAX).unwrap();
