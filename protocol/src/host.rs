@@ -295,7 +295,8 @@ pub struct Hint {
     pub case: CaseId,
     /// Case robot i is played by entry i.
     pub robots: heapless::Vec<RobotId, CASE_ROBOTS_MAX>,
-    /// Place at which its first pass shall be received, if not at the adapted position; robots leave it aside.
+    /// Place at which its first pass shall be received, if not at the adapted position; robots leave it
+    /// aside.
     pub pass_point: Option<WirePoint>,
 }
 
