@@ -55,7 +55,7 @@ fn a_ball_that_rolls_through_the_scope_is_in_it_until_it_has_passed() {
         let ball: Point<geometry::Field> = case.ball().into();
         // It would stop far beyond the scope: 2 m/s roll 5 m.
         for (begins, ends) in [(-0.5, false), (1.2, true)] {
-            let mut field = proposed(base.clone(), &case);
+            let mut field = proposed(base, &case);
             let along = if ball.y() > 0.0 { -1.0 } else { 1.0 };
             field.roll((ball.x(), ball.y() + along * begins), (0.0, along * 2.0));
             let plays = |field: &TestField<'_>| field.brain(1).cycle().play().is_some();
@@ -78,7 +78,7 @@ fn a_robot_that_has_passed_may_be_ordered_elsewhere_and_the_case_goes_on() {
     let base = case_library::division_b();
     let (mut went, mut finished) = (0, 0);
     for case in cases(&base, true).take(12) {
-        let mut field = proposed(base.clone(), &case);
+        let mut field = proposed(base, &case);
         let passer = case.getter().index() as u8 + 1;
         let done = |field: &TestField<'_>| {
             field.brain(passer).cycle().progress == Progress::WaitEnd { finished: true }
