@@ -10,13 +10,13 @@ use protocol::team::{AbortReason, Closure, Progress};
 use protocol::{CaseId, RobotId};
 use rules::League;
 
-/// The cases of division B for a team that defends the goal at −x, whose getter passes or not.
-fn cases<'b>(base: &'b CaseBase<'static>, passes: bool) -> impl Iterator<Item = Case<'b>> {
+/// The cases of division B for a team that defends the goal at −x, whose getter passes.
+fn cases<'b>(base: &'b CaseBase<'static>) -> impl Iterator<Item = Case<'b>> {
     let all = (0..base.len() as u16).filter_map(|id| base.case(CaseId(id)));
-    all.filter(move |case| {
+    all.filter(|case| {
         let first = case.legs(case.ball()).next();
         let is_pass = first.is_some_and(|leg| matches!(leg.kind, casebase::LegKind::Pass(_)));
-        case.defending() == GoalEnd::Negative && is_pass == passes
+        case.defending() == GoalEnd::Negative && is_pass
     })
 }
 
@@ -51,7 +51,7 @@ fn left_the_scope(field: &TestField<'_>) -> bool {
 fn a_ball_that_rolls_through_the_scope_is_in_it_until_it_has_passed() {
     let base = case_library::division_b();
     let (mut through, mut past) = (0, 0);
-    for case in cases(&base, true).take(12) {
+    for case in cases(&base).take(12) {
         let ball: Point<geometry::Field> = case.ball().into();
         // It would stop far beyond the scope: 2 m/s roll 5 m.
         for (begins, ends) in [(-0.5, false), (1.2, true)] {
@@ -77,7 +77,7 @@ fn a_ball_that_rolls_through_the_scope_is_in_it_until_it_has_passed() {
 fn a_robot_that_has_passed_may_be_ordered_elsewhere_and_the_case_goes_on() {
     let base = case_library::division_b();
     let (mut went, mut finished) = (0, 0);
-    for case in cases(&base, true).take(12) {
+    for case in cases(&base).take(12) {
         let mut field = proposed(base, &case);
         let passer = case.getter().index() as u8 + 1;
         let done = |field: &TestField<'_>| {
