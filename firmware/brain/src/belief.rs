@@ -358,7 +358,7 @@ impl Belief {
     /// The ball with its path ended by an opponent on it.
     fn cut_at_opponents(&self, mut ball: BelievedBall) -> BelievedBall {
         let within = self.spec.opponent_holds_within;
-        let path = geometry::Segment::new(ball.position, ball.rest);
+        let path = ball.path();
         let stops =
             |o: &Point<Field>| path.distance_to(*o) < within && (*o - ball.position).dot(path.vector()) > 0.0;
         let first = self.opponents.iter().filter(|o| stops(o)).map(|o| path.share_of(*o)).reduce(f32::min);

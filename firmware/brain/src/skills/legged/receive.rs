@@ -1,6 +1,6 @@
 //! `receive_ball`: intercepts a passed ball and takes it, or reports why it cannot be had. Field frame, SI.
 
-use geometry::{Angle, Segment};
+use geometry::Angle;
 
 use crate::belief::Belief;
 use crate::skills::legged::get_ball;
@@ -17,7 +17,7 @@ pub fn receive(belief: &Belief, exit_heading: Option<Angle>) -> Reception {
         ball.position.distance(me) > FETCH_WITHIN
     } else {
         // Rolling away, and its path to the stop position comes no nearer than can be fetched.
-        Segment::new(ball.position, ball.rest).distance_to(me) > FETCH_WITHIN
+        ball.path().distance_to(me) > FETCH_WITHIN
     };
     if missed { Reception::Missed } else { Reception::Going(get_ball(belief, exit_heading)) }
 }

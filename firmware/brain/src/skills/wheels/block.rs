@@ -35,7 +35,7 @@ fn coming(ball: &BelievedBall, stretch: Segment<Field>) -> Option<Point<Field>> 
     if ball.velocity.norm() < APPROACH_SPEED_MIN {
         return None;
     }
-    let ball_path = Segment::new(ball.position, ball.rest);
+    let ball_path = ball.path();
     crossing(ball_path, stretch, BLOCKED_BESIDE_M)
 }
 

@@ -4,7 +4,7 @@
 //! heading. The heading between where the ball comes from and where it goes is found by three corrections.
 //! Beyond 60° it is taken instead.
 
-use geometry::{Angle, Field, Point, Segment, Vector};
+use geometry::{Angle, Field, Point, Vector};
 use protocol::robot_io::OmniKick;
 
 use crate::belief::{Belief, BelievedBall};
@@ -36,7 +36,7 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
         let face = at.direction_to(ball.position);
         return Drive::avoiding(at - Vector::polar(BALL_AT, face), face).into();
     }
-    let line = Segment::new(ball.position, ball.rest);
+    let line = ball.path();
     // The ordered place, or where the line passes it.
     let meeting_point = line.closest_to(at);
     let direction = ball.velocity.unit().unwrap_or_default();
@@ -60,7 +60,7 @@ pub fn take_pass(belief: &Belief, exit_heading: Option<Angle>) -> Reception {
     let missed = if ball.velocity.norm() < RESTS {
         ball.position.distance(me) > FETCHED
     } else {
-        Segment::new(ball.position, ball.rest).distance_to(me) > FETCHED
+        ball.path().distance_to(me) > FETCHED
     };
     if missed { Reception::Missed } else { Reception::Going(get_ball(belief, exit_heading)) }
 }
@@ -69,7 +69,7 @@ pub fn take_pass(belief: &Belief, exit_heading: Option<Angle>) -> Reception {
 fn comes(belief: &Belief, ball: &BelievedBall, at: Point<Field>) -> bool {
     let me = belief.pose.position;
     let towards = ball.velocity.dot(at - ball.position) > 0.0 || ball.velocity.dot(me - ball.position) > 0.0;
-    let line = Segment::new(ball.position, ball.rest);
+    let line = ball.path();
     ball.velocity.norm() > APPROACH_SPEED_MIN
         && towards
         && line.distance_to(at).min(line.distance_to(me)) < REACH
