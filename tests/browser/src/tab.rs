@@ -150,10 +150,21 @@ impl<'b> Tab<'b> {
         self.ask("Input.dispatchTouchEvent", &json!({ "type": kind, "touchPoints": points })).map(drop)
     }
 
-    /// The middle of the first element of that selector, scrolled into view, CSS pixels.
+    /// The middle of the first element of that selector, scrolled into view, CSS pixels; once it lies in the
+    /// same place in two frames: what a page shows for the first time moves what is below it.
     fn middle(&mut self, selector: &str) -> Result<[f64; 2], BrowserError> {
         let script = format!(
-            "(() => {{ const e = document.querySelector({selector:?}); e.scrollIntoView({{ block: 'nearest' }}); const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }})()"
+            "(async () => {{
+              for (let before = '';;) {{
+                const e = document.querySelector({selector:?});
+                e.scrollIntoView({{ block: 'nearest' }});
+                const b = e.getBoundingClientRect();
+                const at = [b.x + b.width / 2, b.y + b.height / 2];
+                if (String(at) === before) return at;
+                before = String(at);
+                await new Promise(requestAnimationFrame);
+              }}
+            }})()"
         );
         let at = self.eval(&script)?;
         match [at[0].as_f64(), at[1].as_f64()] {
