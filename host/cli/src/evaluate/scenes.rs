@@ -45,8 +45,8 @@ pub(super) struct ScenesArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = MatchTeam::parse)]
     opponents: Vec<MatchTeam>,
     /// Instead of scenes: these drills against scripted opponents, with commas between: carrier, marker,
-    /// cross, rebound, shielder, goal-line. Of our team's options --team, --world, --seed, --jobs, --csv,
-    /// --json count.
+    /// cross, rebound, shielder, goal-line, contested. Of our team's options --team, --world, --seed, --jobs,
+    /// --csv, --json count.
     #[arg(long = "drill", value_name = "LIST", value_delimiter = ',', value_parser = drill)]
     drills: Vec<DrillKind>,
     /// Draw the drills around the situations of this CSV file, plain or gzip, with its index.csv beside it;

@@ -47,6 +47,10 @@ geometry::labels! {
         /// A ball at our goal line, between the posts, beside one, or at the area's edge. Succeeds where it
         /// is half a metre away within 5 s, and no goal.
         GoalLine = "goal-line",
+        /// A ball at rest, one of ours 0.3 m from it, one of theirs 0.3 to 1 m from it that goes for it, our
+        /// two nearest mates marked. Succeeds where ours still have it after 3 s: no kick of theirs, and the
+        /// last touch or the restart ours, or our goal.
+        Contested = "contested",
     }
 }
 
@@ -57,6 +61,7 @@ impl DrillKind {
             Self::Carrier | Self::GoalLine => 5.0,
             Self::Marker => 8.0,
             Self::Cross | Self::Rebound | Self::Shielder => 4.0,
+            Self::Contested => 3.0,
         }
     }
 }
@@ -84,6 +89,8 @@ pub struct DrillRow {
     pub touched_s: Option<f64>,
     /// Time until the ball was half a metre from where it lay, s.
     pub cleared_s: Option<f64>,
+    /// Ours scored, or theirs did not kick the ball and the last touch or the restart is ours.
+    pub kept: bool,
 }
 
 impl DrillRow {
@@ -99,6 +106,7 @@ impl DrillRow {
             next_touch: NextTouch::None,
             touched_s: None,
             cleared_s: None,
+            kept: false,
         }
     }
 
@@ -111,6 +119,7 @@ impl DrillRow {
                 DrillKind::Rebound => self.touched_s.is_some_and(|time| time <= REBOUND_WITHIN_S),
                 DrillKind::Shielder => self.touched_s.is_some_and(|time| time <= SHIELDED_WITHIN_S),
                 DrillKind::GoalLine => self.cleared_s.is_some() && !self.goal_against,
+                DrillKind::Contested => self.kept,
             }
     }
 }

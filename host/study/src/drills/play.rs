@@ -138,6 +138,7 @@ fn watch(
     let began = game.time();
     let ball_was = game.world().ball.position;
     let before = [US, THEM].map(|team| game.referee().accounts().of(team).score);
+    let mut they_kicked = false;
     // The kicker of our free kick has played it before the ball was in play.
     let mut player =
         (drill == DrillKind::Marker).then(|| game.world().last_touch().map(|(who, _)| who)).flatten();
@@ -153,6 +154,7 @@ fn watch(
                 row.touched_s.get_or_insert(time);
             }
             row.shot_against |= is_shot_at_us(event, game);
+            they_kicked |= who.colour == THEM && matches!(event, PhysicsEvent::Kicked { .. });
             match player {
                 _ if row.next_touch != NextTouch::None => {}
                 Some(ours) if who.colour == THEM && ours.colour == US => row.next_touch = NextTouch::Opponent,
@@ -170,6 +172,13 @@ fn watch(
     }
     let after = [US, THEM].map(|team| game.referee().accounts().of(team).score);
     (row.goal, row.goal_against) = (after[0] > before[0], after[1] > before[1]);
+    let last_ours = game.world().last_touch().is_some_and(|(who, _)| who.colour == US);
+    let referee = game.referee();
+    let still_ours = match referee.phase() {
+        Phase::Run => last_ours,
+        _ => referee.next().and_then(Restart::team) == Some(US),
+    };
+    row.kept = row.goal || still_ours && !they_kicked;
     if row.next_touch == NextTouch::None && player.is_some() && game.referee().phase() != Phase::Run {
         row.next_touch = NextTouch::Over;
     }

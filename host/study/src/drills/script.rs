@@ -59,7 +59,7 @@ impl Script {
             side: if lead.y() >= keepers_side { 1.0 } else { -1.0 },
             began_s: None,
             follows: follows(drill, start),
-            loose: matches!(drill, DrillKind::Rebound | DrillKind::GoalLine),
+            loose: matches!(drill, DrillKind::Rebound | DrillKind::GoalLine | DrillKind::Contested),
             given_s: None,
             kicked: false,
             start: start.clone(),
@@ -267,7 +267,7 @@ fn follows(drill: DrillKind, start: &DrillStart) -> Vec<Option<(Who, Vector<Fiel
         |number| number == start.lead || start.shooter.is_some_and(|(shooter, _)| shooter == number);
     let mut taken = vec![false; start.ours.len()];
     let follow = |(number, pose): (usize, &Pose<Field>)| {
-        if lead_and_shooter(number) || drill != DrillKind::Marker {
+        if lead_and_shooter(number) || !matches!(drill, DrillKind::Marker | DrillKind::Contested) {
             return None;
         }
         let others = start.ours.iter().enumerate().skip(1).filter(|(ours, _)| !taken[*ours]);

@@ -67,6 +67,7 @@ fn imitates(drill: DrillKind, situation: &Situation) -> bool {
         DrillKind::Cross => situation.note == "F10",
         DrillKind::Rebound | DrillKind::GoalLine => situation.note == "F5",
         DrillKind::Shielder => situation.kind == "goal against",
+        DrillKind::Contested => true,
     }
 }
 
@@ -80,6 +81,12 @@ fn suits(drill: DrillKind, league: League, frame: &SituationFrame) -> bool {
         DrillKind::Marker => frame.ball.x() < 0.0 && from_area > 0.0 && frame.time_s.abs() < 0.5,
         DrillKind::Cross => (-6.0..-0.5).contains(&frame.time_s),
         DrillKind::Rebound | DrillKind::GoalLine => frame.ball.x() < 0.0,
+        DrillKind::Contested => {
+            let ends = [GoalEnd::Negative, GoalEnd::Positive];
+            let off_areas = ends.map(|end| field.distance_to_area(end, frame.ball));
+            off_areas.iter().all(|off| *off > CONTESTED_OFF_M)
+                && field.clamp(frame.ball, -CONTESTED_OFF_M) == frame.ball
+        }
     }
 }
 
@@ -122,6 +129,7 @@ pub(super) fn draw(
         DrillKind::Cross => start.prepare_cross(&field, chance)?,
         DrillKind::Rebound => start.put_before_keeper(&field, chance),
         DrillKind::GoalLine => start.put_at_goal_line(&field, chance),
+        DrillKind::Contested => start.contest(&field, chance)?,
     }
     start.make_legal(&field);
     start.legs_s = [(); LEGS].map(|()| chance.between(LEG_MIN_S, LEG_MAX_S));
@@ -237,6 +245,30 @@ impl DrillStart {
         self.lead = lead;
     }
 
+    /// A ball at rest between one of ours and one of theirs; the two mates next to it are marked.
+    fn contest(&mut self, field: &FieldSpec, chance: &mut Stream) -> Option<()> {
+        let ball = self.ball.position;
+        let mut mates: Vec<usize> = (1..self.ours.len()).collect();
+        mates.sort_by(|a, b| {
+            self.ours[*a].position.distance(ball).total_cmp(&self.ours[*b].position.distance(ball))
+        });
+        let [player, marked @ ..] = mates.as_slice() else { return None };
+        let from = Angle::new(chance.between(-PI, PI));
+        self.ours[*player] = facing(ball, from, PLAYER_OFF_M, chance);
+        // Bodies at the ball leave each other room.
+        let beside = Angle::new(chance.between(CONTESTED_APART_RAD, 2.0 * PI - CONTESTED_APART_RAD));
+        let lead = self.lead;
+        self.theirs[lead] =
+            facing(ball, from + beside, chance.between(OPPONENT_OFF_MIN_M, OPPONENT_OFF_MAX_M), chance);
+        let markers: Vec<usize> = (0..self.theirs.len()).filter(|number| *number != lead).collect();
+        for (mate, marker) in marked.iter().take(MARKED_MATES).zip(markers) {
+            let mate = self.ours[*mate].position;
+            let at = mate + (ball - mate).unit()? * MARKER_OFF_MATE_M;
+            self.theirs[marker] = Pose { position: off_area(field, at, AREA_OFF_M), heading: from };
+        }
+        Some(())
+    }
+
     /// Robots outside areas that are closed to them, on the field, off the ball and off each other.
     fn make_legal(&mut self, field: &FieldSpec) {
         let (lead, shooter) = (self.lead, self.shooter.map(|(shooter, _)| shooter));
@@ -281,6 +313,12 @@ impl DrillStart {
             poses[*number].position = moved;
         }
     }
+}
+
+/// A pose at that direction and distance from the ball, turned roughly to it.
+fn facing(ball: Point<Field>, direction: Angle, distance: f32, chance: &mut Stream) -> Pose<Field> {
+    let off = Angle::new(chance.between(-FACES_OFF_MAX_RAD, FACES_OFF_MAX_RAD));
+    Pose { position: ball + Vector::polar(distance, direction), heading: direction + Angle::HALF_TURN + off }
 }
 
 /// The pose nearest to a place, by number, with its distance.
@@ -346,6 +384,19 @@ const KEEPER_BALL_MIN_M: f32 = 0.16;
 const KEEPER_BALL_MAX_M: f32 = 0.3;
 /// Speed of a rebound, m/s.
 const REBOUND_SPEED_MAX_M_S: f32 = 0.6;
+/// A contested ball lies this far from lines and areas, m: play stays in the field for its 3 s.
+const CONTESTED_OFF_M: f32 = 0.5;
+/// Distances of the centres of our robot and of the opponent from a contested ball, m.
+const PLAYER_OFF_M: f32 = 0.3;
+const OPPONENT_OFF_MIN_M: f32 = 0.3;
+const OPPONENT_OFF_MAX_M: f32 = 1.0;
+/// Least angle at a contested ball between the two, rad: their centres are 0.3 m apart.
+const CONTESTED_APART_RAD: f32 = 1.05;
+/// They look past it by at most this angle, rad.
+const FACES_OFF_MAX_RAD: f32 = 0.8;
+/// Number of our robots that are marked, and distance of a marker, m, on the ball's side.
+const MARKED_MATES: usize = 2;
+const MARKER_OFF_MATE_M: f32 = 0.4;
 /// Distance of a robot's centre from our area, m.
 const AREA_OFF_M: f32 = 0.12;
 /// Distance between two centres, m: two bodies and a gap.
