@@ -5,9 +5,9 @@ use rules::limits::ROBOT_RADIUS;
 
 use crate::belief::Belief;
 
-/// `velocity`, slowed towards robots that it would reach too fast: paths take them to keep their velocity,
-/// and both may turn towards each other before either has noticed.
-pub(super) fn short_of_bodies(belief: &Belief, mut velocity: Vector<Field>) -> Vector<Field> {
+/// `velocity`, slowed towards robots that it would reach too fast, to `least` (m/s) at most: paths take them
+/// to keep their velocity, and both may turn towards each other before either has noticed.
+pub(super) fn short_of_bodies(belief: &Belief, mut velocity: Vector<Field>, least: f32) -> Vector<Field> {
     for other in &belief.others {
         let off = other.pose.position - belief.pose.position;
         let square = off.dot(off);
@@ -27,7 +27,7 @@ pub(super) fn short_of_bodies(belief: &Belief, mut velocity: Vector<Field>) -> V
         let gap = distance - 2.0 * ROBOT_RADIUS - CONTROL_DELAY_S * closing;
         let most = TOUCHES_AT + math::sqrt(2.0 * BOTH_BRAKE * math::max(gap, 0.0));
         // Who comes at a robot that stands has to slow down itself.
-        let kept = math::max(most + theirs, 0.0);
+        let kept = math::max(most + theirs, least);
         if own > kept {
             velocity += along * (kept - own);
         }
@@ -54,7 +54,7 @@ mod tests {
     use rules::Side;
 
     /// The speed towards an opponent `apart` m ahead that comes with `theirs` m/s, of a robot that wants 3.
-    fn towards(apart: f32, theirs: f32) -> f32 {
+    fn towards(apart: f32, theirs: f32, least: f32) -> f32 {
         let mut b = belief((0.0, 0.0, 0.0), (-2.0, 0.0));
         let pose = geometry::Pose::from_mm_deg(apart * 1000.0, 0.0, 0.0);
         let _ = b.others.push(Other {
@@ -63,15 +63,16 @@ mod tests {
             pose,
             velocity: Vector::new(-theirs, 0.0),
         });
-        short_of_bodies(&b, Vector::new(3.0, 0.5)).x()
+        short_of_bodies(&b, Vector::new(3.0, 0.5), least).x()
     }
 
     #[test]
     fn a_robot_slows_before_another_and_not_for_one_that_it_follows() {
-        assert_eq!(towards(1.2, 0.0), 3.0, "far away");
-        assert!(towards(0.6, 0.0) < 2.1 && towards(0.2, 0.0) <= 1.0, "{}", towards(0.6, 0.0));
-        assert!(towards(0.6, 2.0) < 0.1, "head on it brakes: {}", towards(0.6, 2.0));
-        assert!(towards(0.3, 3.0) >= 0.0, "and does not flee");
-        assert_eq!(towards(0.4, -3.0), 3.0, "it follows as fast as the other drives");
+        assert_eq!(towards(1.2, 0.0, 0.0), 3.0, "far away");
+        assert!(towards(0.6, 0.0, 0.0) < 2.1 && towards(0.2, 0.0, 0.0) <= 1.0, "{}", towards(0.6, 0.0, 0.0));
+        assert!(towards(0.6, 2.0, 0.0) < 0.1, "head on it brakes: {}", towards(0.6, 2.0, 0.0));
+        assert!(towards(0.3, 3.0, 0.0) >= 0.0, "and does not flee");
+        assert_eq!(towards(0.4, -3.0, 0.0), 3.0, "it follows as fast as the other drives");
+        assert!((towards(0.3, 2.0, 0.5) - 0.5).abs() < 0.01, "to a ball it goes on, slower than who comes");
     }
 }

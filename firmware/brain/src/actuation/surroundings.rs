@@ -86,6 +86,11 @@ impl Surroundings {
         // Close to the ball bodies touch: a robot that went around every opponent there would never have it.
         let margin = if mode == DriveMode::Avoiding { ROBOTS } else { ROBOTS_AT_BALL };
         let radius = 2.0 * BODY + margin;
+        // Who plays a ball meets opponents where they are: off all places that they may reach it would leave
+        // the ball to whoever comes.
+        let contests = mode != DriveMode::Avoiding
+            && belief.game.phase == Phase::Run
+            && belief.ball.is_some_and(|ball| ball.position.distance(me) < CONTESTS_WITHIN);
         // Out of a region all others count; first those that it could reach before it is planned again.
         for is_first in [true, false] {
             if !is_first {
@@ -102,7 +107,11 @@ impl Surroundings {
                     || path.distance_to(at) < reach
                     || stops.distance_to(at) < reach;
                 if is_close == is_first {
-                    self.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
+                    let (velocity, strays) = match other.side {
+                        Side::Theirs if contests => (Vector::default(), 0.0),
+                        _ => (other.velocity, STRAYS_FOR * speed),
+                    };
+                    self.add(Obstacle::robot(at, velocity, radius + strays));
                 }
             }
         }
@@ -228,6 +237,8 @@ const LOOKS_AT: f32 = 0.35;
 const LANE: f32 = 0.9;
 /// Beside the ball's path, m.
 const LANE_MARGIN: f32 = 0.03;
+/// A ball this near is played, m: braking from 1.7 m/s ends at it.
+const CONTESTS_WITHIN: f32 = 0.5;
 /// A robot that stands farther beside the path than this is no obstacle, m: a path around one robot keeps
 /// nearer.
 const ASIDE: f32 = 0.3;

@@ -7,12 +7,13 @@
 use geometry::{Angle, Field, Point, Segment, Vector, math};
 use motion::ball::{BallModel, BallPath};
 use motion::intercept::{InterceptRequest, InterceptVerdict, Interception};
-use rules::contact;
+use rules::{Phase, contact};
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
 use crate::skills::Step;
+use crate::skills::wheels::contest::{take, takes_first};
 use crate::skills::wheels::wall::wall;
 
 /// Where a robot stands on the path to a ball at rest.
@@ -30,20 +31,30 @@ pub fn get_ball(belief: &Belief, face: Option<Angle>) -> Step {
         return Step::Done;
     }
     let Some(ball) = belief.ball else { return Step::Running(Intent::Stand { face: None }) };
-    let speed = ball.velocity.norm();
-    if speed > ROLLING {
-        return Step::Running(intercept_ball(belief, &ball).into());
+    let straight = belief.pose.position.direction_to(ball.position);
+    let lies = belief.game.phase == Phase::Run && ball.velocity.norm() <= ROLLING;
+    let has_room = barrier(belief, ball.position).is_none();
+    if lies && has_room && takes_first(belief, &ball, face.unwrap_or(straight)) {
+        return Step::Running(take(belief, &ball).into());
+    }
+    Step::Running(go_for_ball(belief, &ball, face))
+}
+
+/// The same for a ball that there is time to line up for.
+pub(super) fn go_for_ball(belief: &Belief, ball: &BelievedBall, face: Option<Angle>) -> Intent {
+    if ball.velocity.norm() > ROLLING {
+        return intercept_ball(belief, ball).into();
     }
     let face = match face {
         // With an opponent at it there is no time to go around.
-        Some(face) if !is_contested(belief, &ball) => face,
+        Some(face) if !is_contested(belief, ball) => face,
         _ => belief.pose.position.direction_to(ball.position),
     };
     let barrier = barrier(belief, ball.position);
     let (face, speed) = barrier.map_or((face, GO_IN), |barrier| (barrier.nearest(face), barrier.speed));
-    match approach(belief, &ball, face, speed) {
-        Approach::Around(drive) => Step::Running(drive.into()),
-        Approach::In(drive) => Step::Running(Drive { dribbler: 1.0, ..drive }.into()),
+    match approach(belief, ball, face, speed) {
+        Approach::Around(drive) => drive.into(),
+        Approach::In(drive) => Drive { dribbler: 1.0, ..drive }.into(),
     }
 }
 

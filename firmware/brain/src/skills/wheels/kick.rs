@@ -4,19 +4,18 @@
 //! In a restart the kicker may touch the ball once: it goes in only when everything points right, kicker
 //! armed and dribbler still, so that the first touch is the kick.
 
-use geometry::{Angle, Field, Point, Vector, math};
+use geometry::{Field, Point, Vector};
 use motion::ball::BallModel;
-use protocol::host::RuleRole;
 use protocol::robot_io::OmniKick;
+use rules::Phase;
 use rules::limits::ROBOT_RADIUS;
-use rules::{Phase, Side};
 
-use crate::belief::{Belief, BelievedBall};
+use crate::belief::Belief;
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, SHOT};
 use crate::governor::may_kick;
-use crate::skills::Step;
-use crate::skills::wheels::get_ball::{Approach, approach, get_ball};
+use crate::skills::wheels::contest::{take, takes_first};
+use crate::skills::wheels::get_ball::{Approach, approach, go_for_ball};
 
 /// Kicks the ball at a point.
 pub fn kick(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
@@ -33,7 +32,7 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     }
     let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
     let face = ball.position.direction_to(at);
-    // Contact first, the turn after, where an opponent comes for a ball that this robot would go round.
+    // Contact first, the turn after.
     if !once && ready && takes_first(belief, &ball, face) {
         let aimed = (face - belief.pose.heading).abs() < AIM_CLEARS;
         return Drive { kick: if aimed { kick } else { OmniKick::None }, ..take(belief, &ball) }.into();
@@ -43,10 +42,7 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     let behind = ball.position - Vector::polar(LINES_UP, face);
     let blocked = belief.nearest_opponent(behind).is_some_and(|(_, distance)| distance < BODIES);
     if !once && (ball.velocity.norm() > REST_SPEED_MAX || blocked) {
-        return match get_ball(belief, Some(face)) {
-            Step::Running(intent) => intent,
-            Step::Done => kick_held(belief, at, OmniKick::None),
-        };
+        return go_for_ball(belief, &ball, Some(face));
     }
     match approach(belief, &ball, face, GO_IN) {
         Approach::In(drive) if ready => {
@@ -65,47 +61,6 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
         }
         Approach::Around(drive) => drive.into(),
     }
-}
-
-/// Whether a ball nearby shall be touched at once: an opponent has it or could be there before this robot is
-/// behind it, or the robot is the keeper.
-fn takes_first(belief: &Belief, ball: &BelievedBall, face: Angle) -> bool {
-    let me = belief.pose.position;
-    let round = (me.direction_to(ball.position) - face).abs();
-    let opponent = belief.nearest_opponent(ball.position).map_or(f32::INFINITY, |(_, distance)| distance);
-    let wanted = opponent < HAS_BALL
-        || belief.game.rule_role == RuleRole::Keeper
-        || round > GOES_ROUND && is_pressed(belief, ball);
-    // Not at the own goal line, nor towards it where that is near: a ball that is pushed there is in, or out.
-    let field = belief.league().field();
-    let line = field.goal_center(belief.game.defending).x();
-    let pushes_back = (ball.position.x() - me.x()) * line > 0.0;
-    let off_line = if pushes_back { PUSHED_BACK_OFF_LINE } else { OFF_LINE };
-    let at_line = (line - ball.position.x()).abs() < off_line;
-    let within = if opponent < HAS_BALL { TACKLED_WITHIN } else { TAKEN_WITHIN };
-    wanted && me.distance(ball.position) < within && !at_line
-}
-
-/// Whether an opponent is close to the ball, or comes for it.
-fn is_pressed(belief: &Belief, ball: &BelievedBall) -> bool {
-    belief.others.iter().filter(|other| other.side == Side::Theirs).any(|other| {
-        let off = ball.position - other.pose.position;
-        let distance = off.norm();
-        distance < CLOSE_WITHIN_M || distance < PRESSED && other.velocity.dot(off) > COMES_AT * distance
-    })
-}
-
-/// Straight to the ball, and slow at it while the roller does not face it.
-fn take(belief: &Belief, ball: &BelievedBall) -> Drive {
-    let me = belief.pose.position;
-    let lead = TAKE_LEAD + LEADS_FARTHER * me.distance(ball.position);
-    let to_ball = ball.position + ball.velocity * lead - me;
-    let face = to_ball.angle();
-    let gap = to_ball.norm() - BALL_AT;
-    let to = me + to_ball.unit().unwrap_or_default() * (gap + GOES_THROUGH);
-    let speed =
-        TAKES + ball.velocity.norm() + math::sqrt(2.0 * belief.limits_without_ball().braking * gap.max(0.0));
-    Drive { speed, dribbler: 1.0, acceleration_share: TAKES_HARDER, ..Drive::bold(to, face) }
 }
 
 /// With the ball held: turns with it until the kick goes to `at`, then kicks.
@@ -150,35 +105,8 @@ const REST_SPEED_MAX: f32 = 0.25;
 /// by side.
 const LINES_UP: f32 = 0.165;
 const BODIES: f32 = 2.0 * ROBOT_RADIUS;
-/// An opponent this near that moves towards the ball comes for it, m: it is there in the time of half a
-/// circle around the ball.
-const PRESSED: f32 = 1.3;
-/// Speed towards the ball from which on it comes, m/s; nearer than this, m, it need not move.
-const COMES_AT: f32 = 0.3;
-const CLOSE_WITHIN_M: f32 = 0.6;
-/// One this near has it, m.
-const HAS_BALL: f32 = 0.2;
 /// A ball that is taken at once is kicked within this of its direction, rad: it is cleared.
 const AIM_CLEARS: f32 = 0.2;
-/// A robot this much beside its kick goes round or turns, rad.
-const GOES_ROUND: f32 = 0.5;
-/// So near to the ball it takes it first, m.
-const TAKEN_WITHIN: f32 = 0.4;
-/// The same at an opponent, m.
-const TACKLED_WITHIN: f32 = 0.8;
-/// Nearer to the own goal line than this, m, a ball is not taken at once; and not towards it.
-const OFF_LINE: f32 = 0.15;
-const PUSHED_BACK_OFF_LINE: f32 = 0.5;
-/// Speed at the first touch, m/s; how far beyond the touch it aims, m, so that it does not brake to stand
-/// there.
-const TAKES: f32 = 0.5;
-/// It speeds up so much harder than planned, as the wheels hold ahead: 3.9 of 4.5 m/s² for a few decimetres.
-const TAKES_HARDER: f32 = 1.3;
-const GOES_THROUGH: f32 = 0.15;
-/// Time by which its place is led, s: a ball that rolls goes on meanwhile.
-const TAKE_LEAD: f32 = 0.05;
-/// And by this for each metre to go, s/m.
-const LEADS_FARTHER: f32 = 0.4;
 /// How fast a robot goes in for a kick, m/s.
 const GO_IN: f32 = 0.35;
 /// Within this distance of the ball it must face the target before it continues, m.
@@ -215,6 +143,7 @@ mod tests {
     use crate::body::omni::LIMITS;
     use crate::skills::wheels::testing::belief;
     use protocol::Instant;
+    use protocol::host::RuleRole;
     use rules::Side;
 
     fn drive(intent: Intent) -> Drive {

@@ -4,6 +4,7 @@
 //! intents pass the governor; the drivetrain keeps them out of forbidden regions. Field frame, SI.
 
 mod block;
+mod contest;
 mod dribble;
 mod get_ball;
 mod go_to;
