@@ -20,7 +20,8 @@ pub fn line(packet: &[u8]) -> Line {
     let mut line = Line::new();
     if packet.len() <= FRAME_LEN_MAX && line.resize_default(LINE_LEN_MAX).is_ok() {
         // The last byte stays free for the zero.
-        let stuffed = cobs::try_encode(packet, &mut line[..LINE_LEN_MAX - 1]).unwrap_or(0);
+        let room = line.get_mut(..LINE_LEN_MAX - 1);
+        let stuffed = room.and_then(|room| cobs::try_encode(packet, room).ok()).unwrap_or(0);
         line.truncate(stuffed);
         let _room = line.push(0);
     }

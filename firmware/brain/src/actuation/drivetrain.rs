@@ -165,10 +165,10 @@ impl Drivetrain {
             Kept::Way(to) if self.path_age <= PATH_AGE_MAX => {
                 let from = belief.pose.position + self.moves_on;
                 let next = limits(belief, &drive).plan(from, self.velocity, to).at(step).velocity;
-                if belief.is_placing() { next } else { short_of_bodies(belief, next, least(&drive)) }
+                if belief.is_placing() { next } else { short_of_bodies(belief, next, drive.mode) }
             }
             Kept::Velocity if self.path_age <= COASTS_MAX => {
-                short_of_bodies(belief, self.velocity, least(&drive))
+                short_of_bodies(belief, self.velocity, drive.mode)
             }
             Kept::Braking(deceleration) => self.braked(step, deceleration),
             Kept::Way(_) | Kept::Velocity => self.braked(step, LIMITS.braking),
@@ -242,7 +242,7 @@ impl Drivetrain {
             _ if there => Vector::default(),
             next if belief.is_placing() => next,
             _ if path.restraint == Restraint::Unavoidable => self.braked(step, drive.hardest_braking()),
-            next => short_of_bodies(belief, next, least(drive)),
+            next => short_of_bodies(belief, next, drive.mode),
         };
         self.wanted(belief, step, velocity, Some(drive.face), drive)
     }
@@ -293,16 +293,6 @@ impl Drivetrain {
         Wanted { twist: Twist { linear, angular }, dribbler: drive.dribbler, kick }
     }
 }
-
-/// Speed that a robot keeps towards another that comes at it, m/s: none, or on its way to the ball that of a
-/// touch.
-fn least(drive: &Drive) -> f32 {
-    if drive.mode == DriveMode::Avoiding { 0.0 } else { CONTESTS_AT }
-}
-
-/// Speed of a robot at the ball, whoever comes, m/s: the faster one causes a crash, and bodies that close at
-/// less than 1.5 m/s do not crash (rules), so that this robot never does.
-const CONTESTS_AT: f32 = 0.5;
 
 /// Instructions with which a path among this many obstacles is searched.
 fn search_effort(obstacles: usize) -> u32 {

@@ -90,7 +90,10 @@ impl Surroundings {
         // the ball to whoever comes.
         let contests = mode != DriveMode::Avoiding
             && belief.game.phase == Phase::Run
-            && belief.ball.is_some_and(|ball| ball.position.distance(me) < CONTESTS_WITHIN);
+            && belief.ball.is_some_and(|ball| {
+                let off = ball.position - me;
+                off.dot(off) < CONTESTS_WITHIN * CONTESTS_WITHIN
+            });
         // Out of a region all others count; first those that it could reach before it is planned again.
         for is_first in [true, false] {
             if !is_first {
@@ -107,11 +110,9 @@ impl Surroundings {
                     || path.distance_to(at) < reach
                     || stops.distance_to(at) < reach;
                 if is_close == is_first {
-                    let (velocity, strays) = match other.side {
-                        Side::Theirs if contests => (Vector::default(), 0.0),
-                        _ => (other.velocity, STRAYS_FOR * speed),
-                    };
-                    self.add(Obstacle::robot(at, velocity, radius + strays));
+                    let goes_on = if contests && other.side == Side::Theirs { 0.0 } else { 1.0 };
+                    let strays = STRAYS_FOR * speed * goes_on;
+                    self.add(Obstacle::robot(at, other.velocity * goes_on, radius + strays));
                 }
             }
         }

@@ -3,14 +3,28 @@
 
 use geometry::{Angle, math};
 use protocol::host::RuleRole;
+use protocol::robot_io::OmniKick;
 use rules::Side;
 
 use crate::belief::{Belief, BelievedBall};
+use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
+
+/// Straight to a ball that shall be touched at once, and there this kick, if the robot looks along `face`;
+/// none where there is time to line up for it first.
+// Called from two places; a copy in each takes flash.
+#[inline(never)]
+pub(super) fn contest(belief: &Belief, ball: &BelievedBall, face: Angle, kick: OmniKick) -> Option<Intent> {
+    if !takes_first(belief, ball, face) {
+        return None;
+    }
+    let aimed = (face - belief.pose.heading).abs() < AIM_CLEARS;
+    Some(take(belief, ball, if aimed { kick } else { OmniKick::None }).into())
+}
 
 /// Whether a ball nearby shall be touched at once: an opponent has it or could be there before this robot is
 /// behind it, or the robot is the keeper.
-pub(super) fn takes_first(belief: &Belief, ball: &BelievedBall, face: Angle) -> bool {
+fn takes_first(belief: &Belief, ball: &BelievedBall, face: Angle) -> bool {
     let me = belief.pose.position;
     let round = (me.direction_to(ball.position) - face).abs();
     let opponent = belief.nearest_opponent(ball.position).map_or(f32::INFINITY, |(_, distance)| distance);
@@ -37,7 +51,7 @@ fn is_pressed(belief: &Belief, ball: &BelievedBall) -> bool {
 }
 
 /// Straight to the ball, and slow at it while the roller does not face it.
-pub(super) fn take(belief: &Belief, ball: &BelievedBall) -> Drive {
+fn take(belief: &Belief, ball: &BelievedBall, kick: OmniKick) -> Drive {
     let me = belief.pose.position;
     let lead = TAKE_LEAD + LEADS_FARTHER * me.distance(ball.position);
     let to_ball = ball.position + ball.velocity * lead - me;
@@ -46,7 +60,7 @@ pub(super) fn take(belief: &Belief, ball: &BelievedBall) -> Drive {
     let to = me + to_ball.unit().unwrap_or_default() * (gap + GOES_THROUGH);
     let speed =
         TAKES + ball.velocity.norm() + math::sqrt(2.0 * belief.limits_without_ball().braking * gap.max(0.0));
-    Drive { speed, dribbler: 1.0, acceleration_share: TAKES_HARDER, ..Drive::bold(to, face) }
+    Drive { speed, dribbler: 1.0, kick, acceleration_share: TAKES_HARDER, ..Drive::bold(to, face) }
 }
 
 /// An opponent this near that moves towards the ball comes for it, m: it is there in the time of half a
@@ -57,6 +71,8 @@ const COMES_AT: f32 = 0.3;
 const CLOSE_WITHIN_M: f32 = 0.6;
 /// One this near has it, m.
 const HAS_BALL: f32 = 0.2;
+/// A ball that is taken at once is kicked within this of its direction, rad: it is cleared.
+const AIM_CLEARS: f32 = 0.2;
 /// A robot this much beside its kick goes round or turns, rad.
 const GOES_ROUND: f32 = 0.5;
 /// So near to the ball it takes it first, m.

@@ -7,13 +7,14 @@
 use geometry::{Angle, Field, Point, Segment, Vector, math};
 use motion::ball::{BallModel, BallPath};
 use motion::intercept::{InterceptRequest, InterceptVerdict, Interception};
+use protocol::robot_io::OmniKick;
 use rules::{Phase, contact};
 
 use crate::belief::{Belief, BelievedBall};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive};
 use crate::skills::Step;
-use crate::skills::wheels::contest::{take, takes_first};
+use crate::skills::wheels::contest::contest;
 use crate::skills::wheels::wall::wall;
 
 /// Where a robot stands on the path to a ball at rest.
@@ -34,8 +35,11 @@ pub fn get_ball(belief: &Belief, face: Option<Angle>) -> Step {
     let straight = belief.pose.position.direction_to(ball.position);
     let lies = belief.game.phase == Phase::Run && ball.velocity.norm() <= ROLLING;
     let has_room = barrier(belief, ball.position).is_none();
-    if lies && has_room && takes_first(belief, &ball, face.unwrap_or(straight)) {
-        return Step::Running(take(belief, &ball).into());
+    if lies
+        && has_room
+        && let Some(intent) = contest(belief, &ball, face.unwrap_or(straight), OmniKick::None)
+    {
+        return Step::Running(intent);
     }
     Step::Running(go_for_ball(belief, &ball, face))
 }

@@ -14,7 +14,7 @@ use crate::belief::Belief;
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, SHOT};
 use crate::governor::may_kick;
-use crate::skills::wheels::contest::{take, takes_first};
+use crate::skills::wheels::contest::contest;
 use crate::skills::wheels::get_ball::{Approach, approach, go_for_ball};
 
 /// Kicks the ball at a point.
@@ -33,9 +33,11 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
     let face = ball.position.direction_to(at);
     // Contact first, the turn after.
-    if !once && ready && takes_first(belief, &ball, face) {
-        let aimed = (face - belief.pose.heading).abs() < AIM_CLEARS;
-        return Drive { kick: if aimed { kick } else { OmniKick::None }, ..take(belief, &ball) }.into();
+    if !once
+        && ready
+        && let Some(intent) = contest(belief, &ball, face, kick)
+    {
+        return intent;
     }
     // Where an opponent stands behind the ball there is no room to line up: the ball is taken first, and
     // turned.
@@ -105,8 +107,6 @@ const REST_SPEED_MAX: f32 = 0.25;
 /// by side.
 const LINES_UP: f32 = 0.165;
 const BODIES: f32 = 2.0 * ROBOT_RADIUS;
-/// A ball that is taken at once is kicked within this of its direction, rad: it is cleared.
-const AIM_CLEARS: f32 = 0.2;
 /// How fast a robot goes in for a kick, m/s.
 const GO_IN: f32 = 0.35;
 /// Within this distance of the ball it must face the target before it continues, m.
