@@ -191,9 +191,9 @@ impl Practice {
     }
 }
 
-/// A robot of ours this far outside has slid or was pushed there, mm: from 3 m/s it stops in 1.3 m, 0.1 to 0.2
-/// s after the ball that it follows is outside. Farther away it is another team's that practises beside us in
-/// our colour.
+/// A robot of ours this far outside has slid or was pushed there, mm: from 3 m/s it stops in 1.3 m, 0.1 to
+/// 0.2 s after the ball that it follows is outside. Farther away it is another team's that practises beside
+/// us in our colour.
 const OURS_BEYOND_MAX_MM: i32 = 2000;
 /// No field reaches farther, mm.
 const FAR_MM: i16 = 20_000;

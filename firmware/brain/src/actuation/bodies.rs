@@ -51,8 +51,8 @@ const PASSES: f32 = 2.0 * ROBOT_RADIUS + 0.05;
 const CONTROL_DELAY_S: f32 = 0.12;
 /// Bodies touch no faster than this, m/s: a crash is a foul above 1.5 (rules), less the errors of velocities.
 const TOUCHES_AT: f32 = 1.0;
-/// Speed of a robot at the ball, m/s: the faster of two causes a crash, and bodies that close at less than 1.5
-/// m/s do not crash (rules), so that this robot never does.
+/// Speed of a robot at the ball, m/s: the faster of two causes a crash, and bodies that close at less than
+/// 1.5 m/s do not crash (rules), so that this robot never does.
 const CONTESTS_AT: f32 = 0.5;
 /// Deceleration down to that, m/s²: what weak brakes do (estimate).
 const BOTH_BRAKE: f32 = 2.0;
