@@ -4,7 +4,7 @@
 use std::fmt;
 
 use protocol::host::Directive;
-use protocol::quantized::{WirePoint, whole_mm};
+use protocol::quantized::{WirePoint, WirePose, whole_mm};
 use rules::Colour;
 use serde::{Deserialize, Serialize};
 use ssl::vision::DetectionFrame;
@@ -168,6 +168,17 @@ impl Practice {
         directive
     }
 
+    /// The directive, or for a robot that would stand outside the way to the nearest place that is practised
+    /// on.
+    pub fn called_back(&self, directive: Directive, pose: geometry::Pose<geometry::Field>) -> Directive {
+        if directive != Directive::Stand || self.holds(pose.position) {
+            return directive;
+        }
+        let mut pose = WirePose::from(pose);
+        self.bound(&mut pose.at);
+        Directive::GoTo { pose }
+    }
+
     /// Into the rectangle, and out of the one that is left out over its nearest edge.
     fn bound(&self, at: &mut WirePoint) {
         let inside = self.within.map_or(*at, |area| area.nearest(*at));
@@ -279,5 +290,8 @@ mod tests {
             }
         }
         assert_eq!(half.bounded(Directive::Gameplay { hint: None }), Directive::Stand);
+        let called = |x: f32| half.called_back(Directive::Stand, geometry::Pose::from_mm_deg(x, 500.0, 0.0));
+        assert_eq!(called(1000.0), Directive::Stand);
+        assert!(matches!(called(-1500.0), Directive::GoTo { pose } if pose.at == WirePoint { x: 0, y: 500 }));
     }
 }

@@ -32,8 +32,8 @@ fn a_team_that_practises_on_its_half_stays_near_it_and_knows_no_ball_beyond() {
         println!("seed {seed}: of {robots} robots' ticks {out} beyond 0.2 m, {far_out} beyond 1 m");
     }
     // Ordered places are inside; robots go round the ball, the centre circle and others, and leave for a
-    // moment. One that stops beyond while no ball is known stands there until play stops: 6 s in seed 4.
-    assert!(out * 15 < robots && far_out * 100 < robots, "{out} and {far_out} of {robots}");
+    // moment.
+    assert!(out * 15 < robots && far_out * 200 < robots, "{out} and {far_out} of {robots}");
     assert!(ran > 1_500 && beyond > 200, "{ran} ticks of play, the ball beyond in {beyond}");
 }
 

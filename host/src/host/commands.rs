@@ -2,7 +2,8 @@
 //! a drill.
 
 use protocol::host::{Directive, HostCommand, RuleRole};
-use protocol::{Duration, Instant, RobotId};
+use protocol::{Duration, Instant, RobotId, Who};
+use rules::Phase;
 
 use super::{Host, InputVerdict};
 use crate::external::{AnswerError, External, StrategyDrawing};
@@ -48,7 +49,14 @@ impl Host {
             defending: game.defending,
             phase: game.phase,
             rule_role,
-            directive: self.settings.practice.bounded(self.calibrated(to, directive)),
+            directive: {
+                let bounded = self.settings.practice.bounded(self.calibrated(to, directive));
+                let robot = self.world().robot(Who { colour: self.settings.us, id: to });
+                match robot.filter(|_| game.phase == Phase::Run) {
+                    Some(robot) => self.settings.practice.called_back(bounded, robot.pose),
+                    None => bounded,
+                }
+            },
         };
         if let Some(drill) = &self.drill {
             return drill
