@@ -85,7 +85,6 @@ fn suits(drill: DrillKind, league: League, frame: &SituationFrame) -> bool {
             let ends = [GoalEnd::Negative, GoalEnd::Positive];
             let off_areas = ends.map(|end| field.distance_to_area(end, frame.ball));
             off_areas.iter().all(|off| *off > CONTESTED_OFF_M)
-                && field.clamp(frame.ball, -CONTESTED_OFF_M) == frame.ball
         }
     }
 }
@@ -384,7 +383,7 @@ const KEEPER_BALL_MIN_M: f32 = 0.16;
 const KEEPER_BALL_MAX_M: f32 = 0.3;
 /// Speed of a rebound, m/s.
 const REBOUND_SPEED_MAX_M_S: f32 = 0.6;
-/// A contested ball lies this far from lines and areas, m: play stays in the field for its 3 s.
+/// A contested ball lies this far from both areas, m: keepers take no part.
 const CONTESTED_OFF_M: f32 = 0.5;
 /// Distances of the centres of our robot and of the opponent from a contested ball, m.
 const PLAYER_OFF_M: f32 = 0.3;
