@@ -8,7 +8,7 @@ use crate::body::omni::DriveMode;
 
 /// `velocity`, slowed towards robots that it would reach too fast: paths take them to keep their velocity,
 /// and both may turn towards each other before either has noticed. A robot on its way to the ball goes on to
-/// a touch, whoever comes.
+/// a touch, even if an opponent comes.
 #[inline(never)]
 pub(super) fn short_of_bodies(
     belief: &Belief,
@@ -34,7 +34,7 @@ pub(super) fn short_of_bodies(
         let closing = own - theirs;
         let gap = distance - 2.0 * ROBOT_RADIUS - CONTROL_DELAY_S * closing;
         let most = TOUCHES_AT + math::sqrt(2.0 * BOTH_BRAKE * math::max(gap, 0.0));
-        // Who comes at a robot that stands has to slow down itself.
+        // A robot that comes at one that stands has to slow down itself.
         let kept = math::max(most + theirs, least);
         if own > kept {
             velocity += along * (kept - own);

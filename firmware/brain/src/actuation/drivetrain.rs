@@ -208,7 +208,7 @@ impl Drivetrain {
             return self.keep_path(belief, step, CurrentPath { drive: *drive, kept });
         }
         // Where the effort is too small for all robots the drive only slows down for those far away.
-        while effort < search_effort(around.obstacles.len()) && around.leave_out_farthest(from) {}
+        around.leave_out_farthest(from, |number| effort >= search_effort(number));
         if effort < avoid::effort_least(around.obstacles.len()) {
             return self.stand(belief, step, Some(drive.face));
         }

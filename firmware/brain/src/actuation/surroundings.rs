@@ -86,8 +86,8 @@ impl Surroundings {
         // Close to the ball bodies touch: a robot that went around every opponent there would never have it.
         let margin = if mode == DriveMode::Avoiding { ROBOTS } else { ROBOTS_AT_BALL };
         let radius = 2.0 * BODY + margin;
-        // Who plays a ball meets opponents where they are: off all places that they may reach it would leave
-        // the ball to whoever comes.
+        // A robot that plays a ball meets opponents where they are: off all places that they may reach, it
+        // would leave the ball to the first that comes.
         let contests = mode != DriveMode::Avoiding
             && belief.game.phase == Phase::Run
             && belief.ball.is_some_and(|ball| {
@@ -129,17 +129,22 @@ impl Surroundings {
         let _ = self.obstacles.push(obstacle);
     }
 
-    /// Leaves out the robot that is farthest from `me`; `false` where none is left.
-    pub fn leave_out_farthest(&mut self, me: Point<Field>) -> bool {
-        let robots =
-            self.obstacles.iter().map(|robot| robot.shape.distance_to(me)).enumerate().skip(self.fixed);
-        let farthest = robots.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(i, _)| i);
-        let Some(i) = farthest else { return false };
-        let last = self.obstacles.pop();
-        if let (Some(left_out), Some(last)) = (self.obstacles.get_mut(i), last) {
-            *left_out = last;
+    /// Leaves out the robots that are farthest from `me`, one by one, until the number of obstacles `fits` or
+    /// no robot is left.
+    pub fn leave_out_farthest(&mut self, me: Point<Field>, fits: impl Fn(usize) -> bool) {
+        if fits(self.obstacles.len()) {
+            return;
         }
-        true
+        let mut distances = heapless::Vec::<f32, OBSTACLES_MAX>::new();
+        for robot in self.obstacles.iter().skip(self.fixed) {
+            let _ = distances.push(robot.shape.distance_to(me));
+        }
+        while !fits(self.obstacles.len()) {
+            let farthest = distances.iter().enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b));
+            let Some((i, _)) = farthest else { return };
+            leave_out(&mut distances, i);
+            leave_out(&mut self.obstacles, self.fixed + i);
+        }
     }
 
     fn add_goal(&mut self, field: &FieldSpec, goal: GoalEnd) {
@@ -255,6 +260,15 @@ const LEAVES_PAST: f32 = 1.5;
 /// Goal walls matter within this distance of the goal line, m.
 const NEAR_GOAL: f32 = 0.7;
 
+/// Puts the last of a list in place of the `i`th; unlike `swap_remove` it has no panic in flash.
+fn leave_out<T, const N: usize>(list: &mut heapless::Vec<T, N>, i: usize) {
+    if let Some(last) = list.pop()
+        && let Some(left_out) = list.get_mut(i)
+    {
+        *left_out = last;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -271,11 +285,11 @@ mod tests {
         }
         let me = Point::new(0.0, 0.0);
         for left in [[1.0, 2.0].as_slice(), &[1.0], &[]] {
-            assert!(around.leave_out_farthest(me));
+            around.leave_out_farthest(me, |number| number <= 1 + left.len());
             assert_eq!(around.obstacles[0], region);
             assert!(around.obstacles[1..].iter().copied().eq(left.iter().map(|x| robot(*x))), "{around:?}");
         }
-        assert!(!around.leave_out_farthest(me));
+        around.leave_out_farthest(me, |_| false);
         assert_eq!(around.obstacles, [region]);
     }
 }
