@@ -38,13 +38,19 @@ pub(crate) fn pixel(tab: &mut Tab<'_>, at: &str) -> [f64; 2] {
     [at[0].as_f64().unwrap(), at[1].as_f64().unwrap()]
 }
 
-/// Looks for a decision with two robots for a case, in the true picture and in that of the robot that
-/// decided, and goes there.
+/// Looks for a decision with two robots for a case in the true picture, near the ball as in the league's
+/// sampled problems, all of them and the ball known to the robot that decided, and goes there: a case that is
+/// drafted from what that robot did not have is not retrieved.
 const MOMENT: &str = "(async () => {
   for (const e of onetwo.store.matchEvents.filter((e) => e.problem)) {
     const answer = await fetch('/api/freeze', { method: 'POST', body: JSON.stringify({ t: e.t, team: e.team }) });
-    const two = (situation) => Object.keys(situation.teammates).length >= 2;
-    if (!answer.ok || !two(await answer.json()) || !two(e.problem)) continue;
+    if (!answer.ok) continue;
+    const { ball, teammates } = await answer.json();
+    const off = (at) => Math.hypot(at[0] - ball[0], at[1] - ball[1]);
+    const near = Object.values(teammates).reduce((sum, at) => sum + off(at), 0) < 2600;
+    const names = Object.keys(teammates);
+    const known = off(e.problem.ball) < 150 && names.every((name) => e.problem.teammates[name]);
+    if (!near || !known || names.length < 2) continue;
     window.moment = { t: Number(e.t.toFixed(2)), team: e.team };
     location.hash = `t=${window.moment.t}`;
     return true;
