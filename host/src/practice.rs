@@ -245,7 +245,7 @@ mod tests {
             let balls = vec![ball(-10.0), ball(10.0), ball(1500.0)];
             let mut frame = DetectionFrame { camera_id, balls, ..DetectionFrame::default() };
             let robot = |x: f32| DetectionRobot { x, ..DetectionRobot::default() };
-            frame.robots_blue = vec![robot(-1600.0), robot(-1400.0), robot(500.0)];
+            frame.robots_blue = vec![robot(-2100.0), robot(-1900.0), robot(500.0)];
             frame.robots_yellow.clone_from(&frame.robots_blue);
             half.filter(&mut frame, Colour::Blue);
             assert_eq!(frame.balls.len(), left, "camera {camera_id}");
@@ -292,6 +292,8 @@ mod tests {
         assert_eq!(half.bounded(Directive::Gameplay { hint: None }), Directive::Stand);
         let called = |x: f32| half.called_back(Directive::Stand, geometry::Pose::from_mm_deg(x, 500.0, 0.0));
         assert_eq!(called(1000.0), Directive::Stand);
-        assert!(matches!(called(-1500.0), Directive::GoTo { pose } if pose.at == WirePoint { x: 0, y: 500 }));
+        assert!(
+            matches!(called(-2500.0), Directive::GoTo { pose } if pose.at == WirePoint { x: -2000, y: 500 })
+        );
     }
 }

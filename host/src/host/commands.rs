@@ -49,14 +49,7 @@ impl Host {
             defending: game.defending,
             phase: game.phase,
             rule_role,
-            directive: {
-                let bounded = self.settings.practice.bounded(self.calibrated(to, directive));
-                let robot = self.world().robot(Who { colour: self.settings.us, id: to });
-                match robot.filter(|_| game.phase == Phase::Run) {
-                    Some(robot) => self.settings.practice.called_back(bounded, robot.pose),
-                    None => bounded,
-                }
-            },
+            directive: self.practised(game, to, self.calibrated(to, directive)),
         };
         if let Some(drill) = &self.drill {
             return drill
@@ -68,6 +61,16 @@ impl Host {
         orders
             .map(|order| command(order.robot, order.role.rule_role(), self.directive(order, flip)))
             .collect()
+    }
+
+    /// The directive on the part of the field that is practised on.
+    fn practised(&self, game: &ViewGame, to: RobotId, directive: Directive) -> Directive {
+        let bounded = self.settings.practice.bounded(directive);
+        let robot = self.world().robot(Who { colour: self.settings.us, id: to });
+        match robot.filter(|_| game.phase == Phase::Run) {
+            Some(robot) => self.settings.practice.called_back(bounded, robot.pose),
+            None => bounded,
+        }
     }
 
     /// Where a part of the field is practised on no case is played: the robot at the ball gets it.
