@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use arena::game::{Game, GameConfig, GameReport, Watcher, play};
-use arena::ledger::{CaseTable, FOLLOWED, FOLLOWS_WITHIN, Followed};
+use arena::ledger::{CaseTable, FOLLOWED, FOLLOWS_WITHIN, Followed, SituationTally};
 use arena::{CaseNames, CycleEnd, CycleLog, CycleSeen};
 use hil_sim::NativeBackend;
 use hil_sim::small_size::PhysicsEvent;
@@ -125,6 +125,17 @@ fn sums_agree(table: &CaseTable) {
     }
     assert_eq!(table.no_case, table.no_case_by_opponents.values().sum::<u32>());
     assert_eq!(table.no_case, table.no_case_because.values().sum::<u32>());
+    for tally in table.by_situation.values() {
+        assert_eq!(tally.followed_by.values().sum::<u32>(), tally.possessions);
+        assert_eq!(tally.ends.values().sum::<u32>(), tally.plays);
+        assert!(tally.with_case <= tally.plays.min(tally.possessions), "{tally:?}");
+    }
+    let sum = |of: fn(&SituationTally) -> u32| table.by_situation.values().map(of).sum::<u32>();
+    assert!(sum(|tally| tally.possessions) > 8, "{:?}", table.by_situation);
+    // Cases are decided on for balls that no robot has, too, and end before one has it.
+    let plays = sum(|tally| tally.plays);
+    assert!((1..=table.retrieved).contains(&plays), "{plays} of {}", table.retrieved);
+    assert_eq!(CaseTable::read(&table.column()), *table);
 }
 
 impl Witness {

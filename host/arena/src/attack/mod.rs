@@ -147,6 +147,11 @@ impl AttackWatch {
         &self.events
     }
 
+    /// The team that has the ball, or had it last in this spell of play.
+    pub fn possession(&self) -> Option<Colour> {
+        self.possession.map(|possession| possession.team)
+    }
+
     /// The counts of a team.
     pub fn of(&self, team: Colour) -> &AttackCounts {
         &self.counts[team as usize]
@@ -310,7 +315,7 @@ const PRESSED_WITHIN: f64 = 0.5;
 /// A team alone at the ball for this long has it, s: longer than a deflection.
 const CONTROLS_AFTER: f64 = 0.05;
 /// Shorter possessions are deflections, s.
-const POSSESSION_LASTS: f64 = 0.25;
+pub const POSSESSION_LASTS: f64 = 0.25;
 /// Speed above which a touch is a kick, m/s.
 const KICK_SPEED: f32 = 1.0;
 /// Length above which a touch is a kick, m.

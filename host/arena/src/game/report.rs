@@ -186,7 +186,7 @@ impl TeamReport {
             holds_over_2_5s: holds.over(team),
             attack: game.ledger().attack().of(team).clone(),
             play: *game.host(team).counters(),
-            cases: game.ledger().team(team).table(names, true),
+            cases: game.ledger().table(team, names, true),
         }
     }
 }

@@ -11,6 +11,7 @@
 //! | window | from the decision until the team's possession ends or play stops, at the latest [`FOLLOWS_WITHIN`] after the play's end; a goal counts until [`REBOUND_WITHIN`] after a shot that ended the possession |
 //! | opponents | their number in the problem that was decided on; where no robot reported it, those that the host saw |
 
+mod situation;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -23,11 +24,13 @@ use protocol::team::CycleState;
 use protocol::{CaseId, CycleId, RobotId};
 use rules::Colour;
 
+pub use situation::{Situation, SituationTally};
 pub use table::{CaseLine, CaseTable, CaseTally, FOLLOWED, Followed};
 
 use crate::attack::{AttackWatch, BallEvent, BallLook, HostView, PossessionEnd};
 use crate::cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
 use crate::names::CaseNames;
+use situation::Possessions;
 
 /// After a play's end, what follows within this time counts for it, s.
 pub const FOLLOWS_WITHIN: f64 = 10.0;
@@ -40,12 +43,14 @@ pub struct MatchLedger {
     attack: AttackWatch,
     view: HostView,
     teams: [TeamLedger; 2],
+    possessions: Possessions,
 }
 
 impl MatchLedger {
     /// Takes a moment of a match whose true state is known, and what these hosts have received by radio.
     pub fn look(&mut self, look: &BallLook<'_>, hosts: &[&Host]) {
         self.attack.look(look);
+        self.possessions.look(look, &self.attack);
         for host in hosts {
             self.team_mut(host.settings().us).receive(host, look.now);
         }
@@ -59,6 +64,7 @@ impl MatchLedger {
         }
         if let Some(look) = self.view.look(feed, now) {
             self.attack.look(&look);
+            self.possessions.look(&look, &self.attack);
             self.follow(now);
         }
     }
@@ -81,7 +87,14 @@ impl MatchLedger {
         &self.teams[team as usize]
     }
 
-    /// The plays of these hosts' teams by case, by the team's name.
+    /// The plays of a team by case, and its possessions by situation. Where the match is over, plays that have
+    /// not ended end with it.
+    pub fn table(&self, team: Colour, names: &CaseNames, over: bool) -> CaseTable {
+        let ledger = self.team(team);
+        CaseTable { by_situation: self.possessions.of(team, ledger, over), ..ledger.table(names, over) }
+    }
+
+    /// [`Self::table`] of these hosts' teams, by the team's name.
     pub fn tables(
         &self,
         hosts: &[&Host],
@@ -89,7 +102,7 @@ impl MatchLedger {
         over: bool,
     ) -> BTreeMap<&'static str, CaseTable> {
         let teams = hosts.iter().map(|host| host.settings().us);
-        teams.map(|us| (us.label(), self.team(us).table(names, over))).collect()
+        teams.map(|us| (us.label(), self.table(us, names, over))).collect()
     }
 
     fn team_mut(&mut self, team: Colour) -> &mut TeamLedger {
@@ -198,8 +211,17 @@ impl TeamLedger {
         })
     }
 
+    /// Every decision to play a case: from when until when it was played, and the label of its end.
+    fn spans(&self, over: bool) -> impl Iterator<Item = (f64, f64, &'static str)> {
+        let plays = self.cycles.cycles().iter().filter(|cycle| cycle.play.is_some());
+        plays.filter_map(move |cycle| {
+            let until = cycle.end.map_or(f64::INFINITY, |(at, _)| f64::from(at));
+            Some((self.decided.get(&cycle.id)?.at, until, end_label(cycle, over)))
+        })
+    }
+
     /// The plays by case. Where the match is over, plays that have not ended end with it.
-    pub fn table(&self, names: &CaseNames, over: bool) -> CaseTable {
+    fn table(&self, names: &CaseNames, over: bool) -> CaseTable {
         let (mut table, mut tallies) = (CaseTable::default(), BTreeMap::new());
         for cycle in self.cycles.cycles() {
             let decided = self.decided.get(&cycle.id);
@@ -211,12 +233,11 @@ impl TeamLedger {
                 }
                 continue;
             };
-            let end = cycle.end.map(|(_, end)| end).or(over.then_some(CycleEnd::TrialOver));
             // The four stored cases of an authored one count together.
             let authored = CaseId(play.case.0 / 4 * 4);
             let tally: &mut CaseTally = tallies.entry((authored, opponents)).or_default();
             tally.count(
-                end.map_or(RUNNING, CycleEnd::label),
+                end_label(cycle, over),
                 decided.map_or((0, 0), |decided| (decided.passes, decided.arrived)),
                 decided.map_or(Followed::Nothing, |decided| decided.followed),
             );
@@ -241,8 +262,11 @@ const fn because(grounds: Option<Grounds>) -> &'static str {
     }
 }
 
-/// The end of a play that has not ended.
-const RUNNING: &str = "running";
+/// How a cycle ended; where the match is over, one that has not ended ends with it.
+fn end_label(cycle: &CycleSeen, over: bool) -> &'static str {
+    let end = cycle.end.map(|(_, end)| end).or(over.then_some(CycleEnd::TrialOver));
+    end.map_or("running", CycleEnd::label)
+}
 
 fn seen(log: &CycleLog, id: CycleId) -> Option<&CycleSeen> {
     let cycles = log.cycles();

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::situation::SituationTally;
 use crate::cycles::CycleEnd;
 
 geometry::labels! {
@@ -76,7 +77,7 @@ impl CaseTally {
 }
 
 /// A name is stored once: most plays count under names that are known.
-fn add(counts: &mut BTreeMap<String, u32>, name: &str, n: u32) {
+pub(super) fn add(counts: &mut BTreeMap<String, u32>, name: &str, n: u32) {
     match counts.get_mut(name) {
         Some(count) => *count += n,
         None => drop(counts.insert(name.to_owned(), n)),
@@ -109,6 +110,9 @@ pub struct CaseTable {
     pub no_case_because: BTreeMap<String, u32>,
     /// The cases, those that were retrieved most first.
     pub cases: Vec<CaseLine>,
+    /// Possessions by how they began ([`Situation`](super::Situation)), with and without a case.
+    #[serde(default)]
+    pub by_situation: BTreeMap<String, SituationTally>,
 }
 
 impl CaseTable {
@@ -144,6 +148,9 @@ impl CaseTable {
         for (opponents, n) in &other.no_case_by_opponents {
             *self.no_case_by_opponents.entry(*opponents).or_default() += n;
         }
+        for (situation, tally) in &other.by_situation {
+            self.by_situation.entry(situation.clone()).or_default().add(tally);
+        }
     }
 
     /// `cases: 41 started, 17 completed; 12 decisions without a case`.
@@ -154,7 +161,8 @@ impl CaseTable {
     }
 
     /// Writes a column: for each case and number of opponents its counts,
-    /// `center/pass@6:retrieved=3,end.timeout=1`.
+    /// `center/pass@6:retrieved=3,end.timeout=1`, and for each situation those of its possessions,
+    /// `situation.corner:possessions=2,with_case=1,plays=1,end.timeout=1,then.goal=1`.
     pub fn column(&self) -> String {
         let entry = |case: &str, opponents: u8, counts: &[(String, u32)]| {
             let counts = counts.iter().filter(|(_, n)| *n > 0).map(|(name, n)| format!("{name}={n}"));
@@ -180,6 +188,15 @@ impl CaseTable {
             let because = self.no_case_because.iter().map(|(because, n)| format!("{because}={n}"));
             entries.push(format!("{NO_CASE}:{}", because.collect::<Vec<_>>().join(",")));
         }
+        for (situation, tally) in &self.by_situation {
+            let counts =
+                [("possessions", tally.possessions), ("with_case", tally.with_case), ("plays", tally.plays)];
+            let counts = counts.iter().filter(|(_, n)| *n > 0).map(|(name, n)| format!("{name}={n}"));
+            let ends = tally.ends.iter().map(|(end, n)| format!("end.{end}={n}"));
+            let then = tally.followed_by.iter().map(|(what, n)| format!("then.{what}={n}"));
+            let counts: Vec<_> = counts.chain(ends).chain(then).collect();
+            entries.push(format!("{SITUATION}{situation}:{}", counts.join(",")));
+        }
         entries.join(" ")
     }
 
@@ -194,6 +211,20 @@ impl CaseTable {
             });
             if place == NO_CASE {
                 counts.for_each(|(because, n)| add(&mut table.no_case_because, because, n));
+                continue;
+            }
+            if let Some(situation) = place.strip_prefix(SITUATION) {
+                let tally = table.by_situation.entry(situation.to_owned()).or_default();
+                for (name, n) in counts {
+                    match (name, name.split_once('.')) {
+                        ("possessions", _) => tally.possessions += n,
+                        ("with_case", _) => tally.with_case += n,
+                        ("plays", _) => tally.plays += n,
+                        (_, Some(("end", end))) => add(&mut tally.ends, end, n),
+                        (_, Some(("then", what))) => add(&mut tally.followed_by, what, n),
+                        _ => {}
+                    }
+                }
                 continue;
             }
             let Some((case, opponents)) = place.rsplit_once('@') else { continue };
@@ -223,3 +254,5 @@ impl CaseTable {
 
 /// Name of decisions without a case in a column; no case has it, as it has no region.
 const NO_CASE: &str = "no-case";
+/// What the names of situations begin with in a column.
+const SITUATION: &str = "situation.";

@@ -53,5 +53,25 @@ pub fn case_table(team: MatchTeam, table: &CaseTable) -> String {
         because.collect::<Vec<_>>().join(", "),
         opponents.collect::<Vec<_>>().join(", ")
     );
+    situations(team, table, &mut text);
     text
+}
+
+/// The team's possessions by how they began: how many were played by a case, and what came of them.
+fn situations(team: MatchTeam, table: &CaseTable, text: &mut String) {
+    // Writing to a String cannot fail.
+    let _ = write!(
+        text,
+        "\n| possessions of {team} | number | with a case | plays | finished | ball left the scope | reassigned | a goal | shot | loss | out | stop |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|\n"
+    );
+    for (situation, tally) in &table.by_situation {
+        let ends = ["finished", "ball-out-of-scope", "reassigned"];
+        let ends = ends.map(|end| tally.ends.get(end).copied().unwrap_or(0));
+        let then = FOLLOWED[..FOLLOWED.len() - 1].iter().map(|what| tally.followed_by.get(what.label()));
+        let counts = [tally.possessions, tally.with_case, tally.plays].into_iter().chain(ends);
+        let counts = counts.chain(then.map(|n| n.copied().unwrap_or(0)));
+        let counts: Vec<_> = counts.map(|n| n.to_string()).collect();
+        let _ = writeln!(text, "| {situation} | {} |", counts.join(" | "));
+    }
 }
