@@ -24,8 +24,8 @@ use protocol::team::CycleState;
 use protocol::{CaseId, CycleId, RobotId};
 use rules::Colour;
 
-pub use situation::{Situation, SituationTally};
-pub use table::{CaseLine, CaseTable, CaseTally, FOLLOWED, Followed};
+pub use situation::Situation;
+pub use table::{CaseLine, CaseTable, CaseTally, FOLLOWED, Followed, SituationTally};
 
 use crate::attack::{AttackWatch, BallEvent, BallLook, HostView, PossessionEnd};
 use crate::cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
@@ -87,8 +87,8 @@ impl MatchLedger {
         &self.teams[team as usize]
     }
 
-    /// The plays of a team by case, and its possessions by situation. Where the match is over, plays that have
-    /// not ended end with it.
+    /// The plays of a team by case, and its possessions by situation. Where the match is over, plays that
+    /// have not ended end with it.
     pub fn table(&self, team: Colour, names: &CaseNames, over: bool) -> CaseTable {
         let ledger = self.team(team);
         CaseTable { by_situation: self.possessions.of(team, ledger, over), ..ledger.table(names, over) }

@@ -1,13 +1,12 @@
-//! `situation`: a team's possessions by how they began: at a kind of restart, or in play in one of the halves;
-//! how many of them a case played, and what came of them. s, field frame.
+//! `situation`: a team's possessions by how they began (at a kind of restart, or in play in one of the
+//! halves), how many of them a case played, and what came of them. s, field frame.
 
 use std::collections::BTreeMap;
 
 use geometry::{Field, Point};
 use rules::{Colour, FieldSpec, Phase};
-use serde::{Deserialize, Serialize};
 
-use super::table::{Followed, add};
+use super::table::{Followed, SituationTally, add};
 use super::{REBOUND_WITHIN, TeamLedger};
 use crate::attack::{AttackWatch, BallEvent, BallLook, POSSESSION_LASTS, PossessionEnd};
 
@@ -32,36 +31,8 @@ geometry::labels! {
     }
 }
 
-/// Counts of the possessions that began in one situation.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SituationTally {
-    /// Number of possessions.
-    pub possessions: u32,
-    /// Possessions in which robots played a case.
-    pub with_case: u32,
-    /// Plays of cases in them; one that lasts longer counts for the first.
-    pub plays: u32,
-    /// Plays of these by their end (the words of [`CaseTally`](super::CaseTally)).
-    pub ends: BTreeMap<String, u32>,
-    /// Possessions by what followed; what followed none is left out.
-    pub followed_by: BTreeMap<String, u32>,
-}
-
-impl SituationTally {
-    pub(super) fn add(&mut self, other: &Self) {
-        self.possessions += other.possessions;
-        self.with_case += other.with_case;
-        self.plays += other.plays;
-        for (mine, theirs) in [(&mut self.ends, &other.ends), (&mut self.followed_by, &other.followed_by)] {
-            for (name, n) in theirs {
-                add(mine, name, *n);
-            }
-        }
-    }
-}
-
-/// A possession: from the moment at which the restart may be taken or the ball is won, until the ball is lost or
-/// play stops.
+/// A possession: from the moment at which the restart may be taken or the ball is won, until the ball is
+/// lost or play stops.
 #[derive(Clone, Copy, Debug)]
 struct Possession {
     team: Colour,
@@ -165,13 +136,15 @@ impl Possessions {
         ledger: &TeamLedger,
         over: bool,
     ) -> BTreeMap<String, SituationTally> {
-        let of_team = |possession: &&Possession| possession.team == team && !possession.is_deflection();
-        let possessions: Vec<_> = self.all.iter().filter(of_team).collect();
+        let possessions = self.all.iter().filter(|had| had.team == team && !had.is_deflection());
+        let possessions: Vec<_> = possessions.collect();
         let mut plays = vec![Vec::new(); possessions.len()];
         for (from, until, end) in ledger.spans(over) {
             // A case may be decided on before the ball is won, and go on in the next possession.
-            let overlaps = |had: &&Possession| had.from <= until && had.until.is_none_or(|end| end >= from);
-            if let Some(place) = possessions.iter().position(overlaps) {
+            let place = possessions
+                .iter()
+                .position(|had| had.from <= until && had.until.is_none_or(|end| end >= from));
+            if let Some(place) = place {
                 plays[place].push(end);
             }
         }

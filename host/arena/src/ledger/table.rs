@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::situation::SituationTally;
 use crate::cycles::CycleEnd;
 
 geometry::labels! {
@@ -81,6 +80,34 @@ pub(super) fn add(counts: &mut BTreeMap<String, u32>, name: &str, n: u32) {
     match counts.get_mut(name) {
         Some(count) => *count += n,
         None => drop(counts.insert(name.to_owned(), n)),
+    }
+}
+
+/// Counts of the possessions that began in one situation.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SituationTally {
+    /// Number of possessions.
+    pub possessions: u32,
+    /// Possessions in which robots played a case.
+    pub with_case: u32,
+    /// Plays of cases in them; one that lasts longer counts for the first.
+    pub plays: u32,
+    /// Plays of these by their end (the words of [`CaseTally`]).
+    pub ends: BTreeMap<String, u32>,
+    /// Possessions by what followed; what followed none is left out.
+    pub followed_by: BTreeMap<String, u32>,
+}
+
+impl SituationTally {
+    fn add(&mut self, other: &Self) {
+        self.possessions += other.possessions;
+        self.with_case += other.with_case;
+        self.plays += other.plays;
+        for (mine, theirs) in [(&mut self.ends, &other.ends), (&mut self.followed_by, &other.followed_by)] {
+            for (name, n) in theirs {
+                add(mine, name, *n);
+            }
+        }
     }
 }
 
