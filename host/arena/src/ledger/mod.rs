@@ -27,7 +27,7 @@ use rules::Colour;
 pub use situation::Situation;
 pub use table::{CaseLine, CaseTable, CaseTally, FOLLOWED, Followed, SituationTally};
 
-use crate::attack::{AttackWatch, BallEvent, BallLook, HostView, PossessionEnd};
+use crate::attack::{AttackWatch, BallEvent, BallLook, HostView};
 use crate::cycles::{CycleEnd, CycleEvent, CycleLog, CycleSeen};
 use crate::names::CaseNames;
 use situation::Possessions;
@@ -308,16 +308,12 @@ impl Decided {
                 self.followed = self.followed.max(Followed::Shot);
             }
             BallEvent::Lost { team, end } if team == us && open => {
-                let (followed, window) = match end {
-                    PossessionEnd::Goal | PossessionEnd::Shot => {
-                        (Followed::Shot, Window::Rebound(now + REBOUND_WITHIN))
-                    }
-                    PossessionEnd::KickToOpponent | PossessionEnd::Tackle | PossessionEnd::Left => {
-                        (Followed::Loss, Window::Over)
-                    }
+                let followed = Followed::from(end);
+                let window = match followed {
+                    Followed::Goal | Followed::Shot => Window::Rebound(now + REBOUND_WITHIN),
+                    Followed::Loss => Window::Over,
                     // Play has stopped: a goal may be given for it.
-                    PossessionEnd::Out => (Followed::Out, Window::Open),
-                    PossessionEnd::Referee => (Followed::Stop, Window::Open),
+                    Followed::Out | Followed::Stop | Followed::Nothing => Window::Open,
                 };
                 (self.followed, self.window) = (self.followed.max(followed), window);
             }

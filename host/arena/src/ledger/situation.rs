@@ -8,7 +8,7 @@ use rules::{Colour, FieldSpec, Phase};
 
 use super::table::{Followed, SituationTally, add};
 use super::{REBOUND_WITHIN, TeamLedger};
-use crate::attack::{AttackWatch, BallEvent, BallLook, POSSESSION_LASTS, PossessionEnd};
+use crate::attack::{AttackWatch, BallEvent, BallLook, POSSESSION_LASTS};
 
 geometry::labels! {
     /// How a possession began.
@@ -100,14 +100,7 @@ impl Possessions {
                 }
             }
             BallEvent::Lost { team, end } if self.open().is_some_and(|open| open.team == team) => {
-                let followed = match end {
-                    PossessionEnd::Goal | PossessionEnd::Shot => Followed::Shot,
-                    PossessionEnd::KickToOpponent | PossessionEnd::Tackle | PossessionEnd::Left => {
-                        Followed::Loss
-                    }
-                    PossessionEnd::Out => Followed::Out,
-                    PossessionEnd::Referee => Followed::Stop,
-                };
+                let followed = Followed::from(end);
                 if followed == Followed::Shot {
                     self.rebound = Some((self.all.len() - 1, now + REBOUND_WITHIN));
                 }

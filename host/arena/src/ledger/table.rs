@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::attack::PossessionEnd;
 use crate::cycles::CycleEnd;
 
 geometry::labels! {
@@ -23,6 +24,17 @@ geometry::labels! {
         Shot = "shot",
         /// A goal.
         Goal = "goal",
+    }
+}
+
+impl From<PossessionEnd> for Followed {
+    fn from(end: PossessionEnd) -> Self {
+        match end {
+            PossessionEnd::Goal | PossessionEnd::Shot => Self::Shot,
+            PossessionEnd::KickToOpponent | PossessionEnd::Tackle | PossessionEnd::Left => Self::Loss,
+            PossessionEnd::Out => Self::Out,
+            PossessionEnd::Referee => Self::Stop,
+        }
     }
 }
 
@@ -82,6 +94,24 @@ pub(super) fn add(counts: &mut BTreeMap<String, u32>, name: &str, n: u32) {
         None => drop(counts.insert(name.to_owned(), n)),
     }
 }
+
+/// Ends and what followed, with their names in a column.
+fn outcome_counts(ends: &Counts, followed_by: &Counts) -> impl Iterator<Item = (String, u32)> {
+    let ends = ends.iter().map(|(end, n)| (format!("end.{end}"), *n));
+    ends.chain(followed_by.iter().map(|(what, n)| (format!("then.{what}"), *n)))
+}
+
+/// Adds what [`outcome_counts`] names; other names are left out.
+fn read_outcome(ends: &mut Counts, followed_by: &mut Counts, name: &str, n: u32) {
+    match name.split_once('.') {
+        Some(("end", end)) => add(ends, end, n),
+        Some(("then", what)) => add(followed_by, what, n),
+        _ => {}
+    }
+}
+
+/// Counts by name.
+type Counts = BTreeMap<String, u32>;
 
 /// Counts of the possessions that began in one situation.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -203,8 +233,7 @@ impl CaseTable {
                     ("pass".to_owned(), tally.passes),
                     ("arrived".to_owned(), tally.passes_arrived),
                 ];
-                counts.extend(tally.ends.iter().map(|(end, n)| (format!("end.{end}"), *n)));
-                counts.extend(tally.followed_by.iter().map(|(what, n)| (format!("then.{what}"), *n)));
+                counts.extend(outcome_counts(&tally.ends, &tally.followed_by));
                 entries.push(entry(&line.case, *opponents, &counts));
             }
         }
@@ -219,9 +248,8 @@ impl CaseTable {
             let counts =
                 [("possessions", tally.possessions), ("with_case", tally.with_case), ("plays", tally.plays)];
             let counts = counts.iter().filter(|(_, n)| *n > 0).map(|(name, n)| format!("{name}={n}"));
-            let ends = tally.ends.iter().map(|(end, n)| format!("end.{end}={n}"));
-            let then = tally.followed_by.iter().map(|(what, n)| format!("then.{what}={n}"));
-            let counts: Vec<_> = counts.chain(ends).chain(then).collect();
+            let outcomes = outcome_counts(&tally.ends, &tally.followed_by);
+            let counts: Vec<_> = counts.chain(outcomes.map(|(name, n)| format!("{name}={n}"))).collect();
             entries.push(format!("{SITUATION}{situation}:{}", counts.join(",")));
         }
         entries.join(" ")
@@ -243,13 +271,11 @@ impl CaseTable {
             if let Some(situation) = place.strip_prefix(SITUATION) {
                 let tally = table.by_situation.entry(situation.to_owned()).or_default();
                 for (name, n) in counts {
-                    match (name, name.split_once('.')) {
-                        ("possessions", _) => tally.possessions += n,
-                        ("with_case", _) => tally.with_case += n,
-                        ("plays", _) => tally.plays += n,
-                        (_, Some(("end", end))) => add(&mut tally.ends, end, n),
-                        (_, Some(("then", what))) => add(&mut tally.followed_by, what, n),
-                        _ => {}
+                    match name {
+                        "possessions" => tally.possessions += n,
+                        "with_case" => tally.with_case += n,
+                        "plays" => tally.plays += n,
+                        _ => read_outcome(&mut tally.ends, &mut tally.followed_by, name, n),
                     }
                 }
                 continue;
@@ -258,13 +284,11 @@ impl CaseTable {
             let Ok(opponents) = opponents.parse::<u8>() else { continue };
             let mut tally = CaseTally::default();
             for (name, n) in counts {
-                match (name, name.split_once('.')) {
-                    ("retrieved", _) => tally.retrieved += n,
-                    ("pass", _) => tally.passes += n,
-                    ("arrived", _) => tally.passes_arrived += n,
-                    (_, Some(("end", end))) => add(&mut tally.ends, end, n),
-                    (_, Some(("then", what))) => add(&mut tally.followed_by, what, n),
-                    _ => {}
+                match name {
+                    "retrieved" => tally.retrieved += n,
+                    "pass" => tally.passes += n,
+                    "arrived" => tally.passes_arrived += n,
+                    _ => read_outcome(&mut tally.ends, &mut tally.followed_by, name, n),
                 }
             }
             tally.finished = tally.ends.get(CycleEnd::FINISHED).copied().unwrap_or(0);

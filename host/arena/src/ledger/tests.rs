@@ -7,6 +7,7 @@ use protocol::team::{AbortReason, Closure, Decision, Play};
 use protocol::{CaseId, Who};
 
 use super::*;
+use crate::attack::PossessionEnd;
 
 fn robot(n: u8) -> RobotId {
     RobotId::new(n).unwrap()
