@@ -158,7 +158,7 @@ pub const KEYS: &[Key] = &[
         "m/s",
         0.5,
         6.5,
-        "fastest ball that is ordered; 10 % more must stay within the rules' 6.5",
+        "fastest ball that is ordered; 4 % more must stay within the rules' 6.5",
     ),
     number("kicker.fastest_2013", "m/s", 0.5, 8.0, "the same under the rules of 2013, of their 8"),
     Key {

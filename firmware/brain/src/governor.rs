@@ -6,7 +6,7 @@
 //! | HALT or time-out; no host for 100 ms; booted, or the host silent for 0.5 s, less than 0.5 s ago; no command for 100 ms; own place unknown; tipped; spinning; battery low; not a number | brakes at the limit, dribbler off, kicker discharged |
 //! | no host for 50 ms | the speed left shrinks to nothing at 100 ms |
 //! | STOP | 1.3 m/s, the rules' 1.5 less the noise of wheels |
-//! | a kick that is too fast, or that the phase does not allow | a kick of 5.8 m/s (7.1 in 2013), or none |
+//! | a kick that is too fast, or that the phase does not allow | a kick of 6.24 m/s (7.1 in 2013), or none |
 //!
 //! Motors are released only while the robot stands: after half a second without command (host silent), tipped
 //! or with an empty battery ([`Governor::has_let_go`]). If it is pushed then, it brakes again; a command to

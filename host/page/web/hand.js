@@ -45,7 +45,7 @@ export function handPart() {
     el("h2", {}, "One robot by hand"),
     el("div", { class: "field-set" }, el("label", { for: "hand-robot" }, "Robot"), el("select", { id: "hand-robot", onchange: release }),
       el("label", { for: "hand-speed" }, "m/s"), el("input", { type: "number", id: "hand-speed", min: "0.1", max: "2", step: "0.1", value: "0.5" }),
-      el("label", { for: "hand-kick" }, "kick, m/s"), el("input", { type: "number", id: "hand-kick", min: "1", max: "5.8", step: "0.1", value: "3" }),
+      el("label", { for: "hand-kick" }, "kick, m/s"), el("input", { type: "number", id: "hand-kick", min: "1", max: "6.2", step: "0.1", value: "3" }),
       el("label", {}, el("input", { type: "checkbox", id: "hand-dribbler" }), " dribbler")),
     el("div", { id: "hand-pad", tabindex: "0", role: "group", "aria-label": "Drive by keys: W A S D or arrows, Q and E to turn, K to kick, I to show which one it is, as long as they are held",
       onkeydown: (event) => key(event, true), onkeyup: (event) => key(event, false), onfocusout: release }, ...buttons),

@@ -249,7 +249,7 @@ const FACTS: [Fact; 10] = [
     Fact {
         name: "kicker and wheel control",
         patterns: &[
-            "5.8",
+            "6.24",
             "7.1",
             "PULSE #",
             "VOLTS #",

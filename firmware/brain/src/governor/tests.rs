@@ -237,19 +237,19 @@ fn the_table_of_kicks_by_phase() {
         (Timeout(Ours), None),
         (Timeout(Theirs), None),
         (Stop, Some(OmniKick::None)),
-        (BallPlacement(Ours), Some(OmniKick::Flat(5.8))),
+        (BallPlacement(Ours), Some(OmniKick::Flat(6.24))),
         (BallPlacement(Theirs), Some(OmniKick::None)),
         (PrepareKickoff(Ours), Some(OmniKick::None)),
         (PrepareKickoff(Theirs), Some(OmniKick::None)),
-        (Kickoff(Ours), Some(OmniKick::Flat(5.8))),
+        (Kickoff(Ours), Some(OmniKick::Flat(6.24))),
         (Kickoff(Theirs), Some(OmniKick::None)),
         (PreparePenalty(Ours), Some(OmniKick::None)),
         (PreparePenalty(Theirs), Some(OmniKick::None)),
-        (Penalty(Ours), Some(OmniKick::Flat(5.8))),
-        (Penalty(Theirs), Some(OmniKick::Flat(5.8))),
-        (FreeKick(Ours), Some(OmniKick::Flat(5.8))),
+        (Penalty(Ours), Some(OmniKick::Flat(6.24))),
+        (Penalty(Theirs), Some(OmniKick::Flat(6.24))),
+        (FreeKick(Ours), Some(OmniKick::Flat(6.24))),
         (FreeKick(Theirs), Some(OmniKick::None)),
-        (Run, Some(OmniKick::Flat(5.8))),
+        (Run, Some(OmniKick::Flat(6.24))),
     ];
     for (phase, expected) in table {
         let hard = Wanted { kick: OmniKick::Flat(8.0), ..go(1.0) };
@@ -268,7 +268,7 @@ fn the_table_of_kicks_by_phase() {
 
 #[test]
 fn kicks_are_held_to_the_leagues_ball_speed_whichever_way_the_ball_goes() {
-    for (league, most) in [(League::DivisionA, 5.8), (League::DivisionB, 5.8), (League::Ssl2013, 7.1)] {
+    for (league, most) in [(League::DivisionA, 6.24), (League::DivisionB, 6.24), (League::Ssl2013, 7.1)] {
         let mut governor = Governor { league, ..driving(600, Phase::Run) };
         for (wanted, expected) in [
             (OmniKick::Chip(9.0), OmniKick::Chip(most)),
