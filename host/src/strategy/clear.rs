@@ -71,8 +71,11 @@ pub fn clearance(
     from: Point<Attack>,
     fits: impl Fn(Vector<Attack>) -> bool,
 ) -> Option<Clearance> {
+    // Straight on it is released soonest.
+    let straight = Vector::polar(1.0, straight_on(who, from));
     let directions = (0..DIRECTIONS)
         .map(|step| Vector::polar(1.0, Angle::degrees(STEP_DEG * f32::from(step))))
+        .chain([straight])
         .filter(|ray| ray.x() > BACK_MAX && fits(*ray));
     if who.id == view.keeper {
         return KeepersRating::of(view, kicks, who, from).of_directions(directions).reduce(better);
@@ -87,7 +90,9 @@ pub fn clearance(
         .filter(|(at, kick)| {
             // At a restart opponents stand in every way along the ground.
             let flies = view.phase == Phase::Run || matches!(kick, KickOrder::Chip(_));
-            flies && at.distance(from) > LENGTH_MIN_M
+            // The lines turn it.
+            let fits = (*at - from).unit().is_some_and(&fits);
+            flies && fits && at.distance(from) > LENGTH_MIN_M
         })
         .map(|(at, kick)| Clearance { at, kick, worth: rating.worth(at, kick) })
         .reduce(better)
@@ -132,8 +137,7 @@ impl<'v> Release<'v> {
             .iter()
             .map(|robot| touch_time(robot, from, &c.opponent))
             .fold(f32::INFINITY, f32::min);
-        let off = from - who.position;
-        let straight = if off.norm() < contact::TOUCHES_WITHIN { who.heading } else { off.angle() };
+        let straight = straight_on(who, from);
         // At a restart no opponent may come before the kick.
         let pressed_after = if view.phase == Phase::Run {
             theirs - touch_time(who, from, &c.receiver)
@@ -161,6 +165,12 @@ impl<'v> Release<'v> {
         let half = self.view.field.length * 0.5;
         (1.0 - lost) * released + lost * self.view.stakes.of_theirs(half, self.from)
     }
+}
+
+/// The direction of a robot that comes to the ball, or has it at its front.
+fn straight_on(robot: &ViewRobot, ball: Point<Attack>) -> Angle {
+    let off = ball - robot.position;
+    if off.norm() < contact::TOUCHES_WITHIN { robot.heading } else { off.angle() }
 }
 
 /// Time after which `robot` touches a ball at `at`, s.
@@ -248,6 +258,19 @@ mod tests {
             "{found:?}"
         );
         assert_eq!(clearance(&view, &kicks, &view.ours[0], from, |_| false), None);
+    }
+
+    /// The robot stood at (-3.32, -0.29) with the ball, was sent round it to kick 43° to the left, and lost it.
+    #[test]
+    fn a_ball_at_the_front_is_cleared_straight_on_before_an_opponent_comes() {
+        let kicks = Kicks::of(League::DivisionB);
+        let ours = [(-4.3, 0.0), (-3.32, -0.29), (-2.91, -0.04), (-1.67, -1.12)];
+        let mut view = view((-3.22, -0.26), &ours, &[(-3.0, -0.48), (-2.3, -2.2)]);
+        view.ours[1].heading = Angle::degrees(-9.0);
+        let from = Point::new(-3.22, -0.26);
+        let found = clearance(&view, &kicks, &view.ours[1], from, |_| true).unwrap();
+        let turn = (from.direction_to(found.at) - view.ours[1].heading).abs();
+        assert!(turn < 0.2, "{} rad, {found:?}", turn);
     }
 
     #[test]

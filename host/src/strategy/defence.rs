@@ -5,7 +5,7 @@ use geometry::{Angle, Attack, Point, Vector};
 use protocol::host::KickOrder;
 
 use super::order::{OrderReason, Task};
-use super::view::{ROOM_MAX_M, View, ViewBall, nearest};
+use super::view::{View, ViewBall, nearest};
 
 /// The keeper's line lies this far before the goal line, m: a body, so that the posts do not stop it.
 const KEEPER_OUT_M: f32 = 0.15;
@@ -17,18 +17,6 @@ pub(super) const GROUND_HEIGHT_MAX_M: f32 = 0.1;
 const CLEAR_AHEAD_M: f32 = 2.5;
 /// A clearance from before the area turns from straight out by this much, rad: 30°.
 const CLEAR_TURN_RAD: f32 = core::f32::consts::FRAC_PI_6;
-/// Number of directions in which a field player may clear to either side, in steps of [`CLEAR_STEP_DEG`]
-/// degrees: up to 105° from straight out.
-const CLEAR_TURNS: i16 = 7;
-const CLEAR_STEP_DEG: f32 = 15.0;
-/// A step must gain more room than this, m.
-const CLEAR_TURN_COST_M: f32 = 0.02;
-/// Room that must be gained per metre of additional path to where it lines up.
-const CLEAR_PATH_COST: f32 = 0.6;
-/// Two robots side by side, m.
-const BODIES_APART_M: f32 = 0.2;
-/// A robot's centre is this far behind the ball where it lines up, m (`brain`'s get_ball).
-const LINES_UP_BEHIND_M: f32 = 0.165;
 /// Distance inside the side line, m.
 const CLEAR_INSIDE_M: f32 = 0.6;
 /// A clearance to a teammate nearer than this is not tried, m.
@@ -115,37 +103,6 @@ pub fn clearance_outwards(view: &View, ball: &ViewBall) -> (Point<Attack>, KickO
     let best = [CLEAR_TURN_RAD, -CLEAR_TURN_RAD].map(turned);
     let (at, room) =
         best.into_iter().fold(turned(0.0), |best, next| if next.1 > best.1 { next } else { best });
-    (at, clearing_kick(ball, at, room), room)
-}
-
-/// The same for a field player: it may not stand in our area, so the ball goes out where there is room to
-/// line up behind it, else along the area's edge. `off`: distance of the robot's centre from the area, m.
-pub fn clearance_beside(
-    view: &View,
-    who: &super::view::ViewRobot,
-    ball: &ViewBall,
-    off: f32,
-) -> (Point<Attack>, KickOrder, f32) {
-    let out = (ball.position - view.our_goal()).unit().unwrap_or(Vector::new(1.0, 0.0));
-    let best = (-CLEAR_TURNS..=CLEAR_TURNS)
-        .filter_map(|turn| {
-            let ray = out.rotated(Angle::degrees(CLEAR_STEP_DEG * turn as f32));
-            let lines_up = ball.position - ray * LINES_UP_BEHIND_M;
-            if view.in_our_area(lines_up, off) {
-                return None;
-            }
-            let at = view.clamp(ball.position + ray * CLEAR_AHEAD_M, CLEAR_INSIDE_M);
-            let room = view.room_along(ball.position, at);
-            let teammates =
-                view.ours.iter().filter(|teammate| teammate.id != who.id && teammate.id != view.keeper);
-            let blocked = nearest(teammates, lines_up).is_some_and(|(_, distance)| distance < BODIES_APART_M);
-            let costs = CLEAR_TURN_COST_M * turn.unsigned_abs() as f32
-                + CLEAR_PATH_COST * who.position.distance(lines_up)
-                + if blocked { ROOM_MAX_M } else { 0.0 };
-            Some((at, room, room - costs))
-        })
-        .reduce(|best, next| if next.2 > best.2 { next } else { best });
-    let (at, room) = best.map_or((Point::new(0.0, ball.position.y()), 0.0), |(at, room, _)| (at, room));
     (at, clearing_kick(ball, at, room), room)
 }
 

@@ -22,8 +22,8 @@ const KEEPERS_BALL_WITHIN_M: f32 = 0.3;
 /// Where a field player lines up for such a ball its centre is this far off our area, m: a body, and the
 /// distance robots keep (`brain`'s surroundings: 0.01 m off the line's middle of 0.01 m).
 const OFF_OUR_AREA_M: f32 = 0.115;
-/// Nearer than this to our area no field player gets behind the ball or beside it, m: a body.
-const BEHIND_BALL_ROOM_M: f32 = ROBOT_RADIUS;
+/// Two robots side by side, m.
+const BODIES_APART_M: f32 = 0.2;
 /// A ball this near a robot's centre, m, and this far from its heading, rad, is at its front.
 const FRONT_WITHIN_M: f32 = contact::TOUCHES_WITHIN;
 const FRONT_WITHIN_RAD: f32 = 0.4;
@@ -91,30 +91,24 @@ impl DefenceState {
         threat::legal(view, at, &threat::ThreatSettings::default())
     }
 
-    /// The task of a field player that is first at a ball before our area.
+    /// The task of a field player that is first at a ball before our area: its clearance, by the list. Where it
+    /// has no room behind the ball it comes from the field, and turns it.
     pub(super) fn clears_before_our_area(
         &mut self,
         view: &View,
+        kicks: &Kicks,
         who: RobotId,
         ball: &ViewBall,
     ) -> Option<(Task, OrderReason)> {
         let robot = view.our(who).filter(|_| self.keepers_ball == Some(false))?;
-        if !view.in_our_area(ball.position, BEHIND_BALL_ROOM_M) {
-            return Some(self.kept_clearance(view, who, ball, |view| {
-                let (at, kick, room) = defence::clearance_beside(view, robot, ball, OFF_OUR_AREA_M);
-                (Task::Kick { at, kick }, OrderReason::BestTarget { room })
-            }));
-        }
-        // There is no room behind it: it is approached from the field, and turned.
-        if !has_at_front(robot, ball) {
-            let to_ball = ball.position - robot.position;
-            let room = view.room_along(robot.position, ball.position);
-            return Some((Task::GetBall { face: ball.position + to_ball }, OrderReason::BestTarget { room }));
-        }
-        Some(self.kept_clearance(view, who, ball, |view| {
-            let (at, kick, room) = defence::clearance_outwards(view, ball);
-            (Task::Kick { at, kick }, OrderReason::BestTarget { room })
-        }))
+        let lines_up = |ray: Vector<Attack>| {
+            let at = ball.position - ray * BEHIND_BALL_M;
+            let mut mates = view.ours.iter().filter(|mate| mate.id != who && mate.id != view.keeper);
+            !view.in_our_area(at, OFF_OUR_AREA_M)
+                && mates.all(|mate| mate.position.distance(at) > BODIES_APART_M)
+        };
+        let face = ball.position + (ball.position - robot.position);
+        Some(self.clears(view, kicks, robot, ball, lines_up, face))
     }
 
     /// The keeper at its place; it clears a ball in our area, and intercepts a shot on its line.
@@ -163,8 +157,8 @@ impl DefenceState {
             && (before || view.in_our_area(ball.position, 0.0))
     }
 
-    /// The keeper's clearance, by the same list as everyone's, looked at again until the ball leaves. Where
-    /// no body fits behind the ball it is taken from a side on which one does, and turned.
+    /// The keeper's clearance. Where no body fits behind the ball it is taken from a side on which one does, and
+    /// turned.
     fn keeper_clears(
         &mut self,
         view: &View,
@@ -173,37 +167,55 @@ impl DefenceState {
         ball: &ViewBall,
     ) -> (Task, OrderReason) {
         let from = ball.position;
-        let has = has_at_front(keeper, ball) || view.contact.has(keeper.id);
         let fits = |ray: Vector<Attack>| {
             let places = [BEHIND_BALL_M, contact::TOUCHES_WITHIN].map(|off| from - ray * off);
-            has || places.iter().all(|at| has_room(view, *at))
+            places.iter().all(|at| has_room(view, *at))
         };
-        let room = |at| OrderReason::ClearsArea { room: view.room_along(from, at) };
-        let Some(best) = clear::clearance(view, kicks, keeper, from, fits) else {
-            let straight = from - keeper.position;
-            let rays = (0..TAKEN_FROM).map(|step| {
-                Vector::polar(1.0, Angle::degrees(360.0 / f32::from(TAKEN_FROM) * f32::from(step)))
-            });
-            let ray = rays
-                .filter(|ray| has_room(view, from - *ray * contact::TOUCHES_WITHIN))
-                .max_by(|a, b| a.dot(straight).total_cmp(&b.dot(straight)));
-            let face = from + ray.unwrap_or(straight);
+        let straight = from - keeper.position;
+        let rays = (0..TAKEN_FROM)
+            .map(|step| Vector::polar(1.0, Angle::degrees(360.0 / f32::from(TAKEN_FROM) * f32::from(step))));
+        let ray = rays
+            .filter(|ray| has_room(view, from - *ray * contact::TOUCHES_WITHIN))
+            .max_by(|a, b| a.dot(straight).total_cmp(&b.dot(straight)));
+        self.clears(view, kicks, keeper, ball, fits, from + ray.unwrap_or(straight))
+    }
+
+    /// A clearance by the same list as everyone's, in a direction that `fits` or with a ball at the robot's front,
+    /// looked at again until the ball leaves; without one the ball is taken towards `face`.
+    fn clears(
+        &mut self,
+        view: &View,
+        kicks: &Kicks,
+        robot: &ViewRobot,
+        ball: &ViewBall,
+        fits: impl Fn(Vector<Attack>) -> bool,
+        face: Point<Attack>,
+    ) -> (Task, OrderReason) {
+        let from = ball.position;
+        let has = has_at_front(robot, ball) || view.contact.has(robot.id);
+        let fits = |ray| has || fits(ray);
+        let room = |at| {
+            let room = view.room_along(from, at);
+            let keeper = robot.id == view.keeper;
+            if keeper { OrderReason::ClearsArea { room } } else { OrderReason::BestTarget { room } }
+        };
+        let Some(best) = clear::clearance(view, kicks, robot, from, fits) else {
             return (Task::GetBall { face }, room(face));
         };
         let kept = self.clearance.filter(|kept| {
-            kept.who == keeper.id
+            kept.who == robot.id
                 && kept.from.distance(from) < BALL_MOVED_M
                 && view.now.since(kept.since) < CLEARANCE_KEPT
         });
         if let Some(kept) = kept
             && let Task::Kick { at, kick } = kept.task
             && (at - from).unit().is_some_and(fits)
-            && clear::worth_again(view, kicks, keeper, from, (at, kick)) > best.worth - CLEARED_BETTER_BY
+            && clear::worth_again(view, kicks, robot, from, (at, kick)) > best.worth - CLEARED_BETTER_BY
         {
             return (kept.task, room(at));
         }
         let (task, why) = (Task::Kick { at: best.at, kick: best.kick }, room(best.at));
-        self.clearance = Some(Clearance { who: keeper.id, since: view.now, from, task, why });
+        self.clearance = Some(Clearance { who: robot.id, since: view.now, from, task, why });
         (task, why)
     }
 

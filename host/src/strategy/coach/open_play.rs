@@ -75,7 +75,7 @@ impl Coach {
         if let Some((id, seconds)) = soonest
             && plan.take(id)
         {
-            let clears = self.defence.clears_before_our_area(view, id, &ball);
+            let clears = self.defence.clears_before_our_area(view, self.passes.kicks(), id, &ball);
             if let Some((task, why)) = clears.or_else(|| self.attack(plan, id, &ball)) {
                 plan.order(id, Role::Player, task, why);
                 self.defend(plan, self.open_play.attacked);

@@ -123,7 +123,7 @@ impl Coach {
         if let Some((id, arrival)) = first
             && plan.take(id)
         {
-            let clears = self.defence.clears_before_our_area(view, id, &ball);
+            let clears = self.defence.clears_before_our_area(view, self.passes.kicks(), id, &ball);
             if let Some((task, why)) = clears.or_else(|| self.act(plan, id, &ball, &arrival)) {
                 plan.order(id, Role::Player, task, why);
                 self.defend(plan, self.open_play.attacked);
