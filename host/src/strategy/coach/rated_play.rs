@@ -37,6 +37,8 @@ const RESTART_BETTER_BY: f32 = 0.05;
 const POOR_SHARE: f32 = 0.4;
 /// And by this share of what it is worth: places of equal worth do not alternate.
 const BETTER_BY_SHARE: f32 = 0.25;
+/// An opponent this near the ball, m, disputes it: no case begins or holds its robot there.
+const DISPUTED_WITHIN_M: f32 = 0.25;
 /// This soon before it touches the ball, s, a robot keeps its action until that is worth this much less than
 /// when it was chosen, and half of it.
 const LOCKED_WITHIN_S: f32 = 0.35;
@@ -234,7 +236,8 @@ impl Coach {
         let receives = |id| !defenders.contains(&Some(id));
         let pass = view.proposed_pass(who).filter(|_| self.tactics.bridge);
         let may = |id| id == who || plan.free.contains(&id) && id != view.keeper && receives(id);
-        let retrieved = (self.tactics.bridge && !view.in_play.has(who))
+        let disputed = may_play_on && view.theirs_within(from) < DISPUTED_WITHIN_M;
+        let retrieved = (self.tactics.bridge && !view.in_play.has(who) && !disputed)
             .then(|| case_candidate::retrieve(view, &self.open_play.rated.cases, who, from, may))
             .flatten();
         // Robots play cases only while the ball is in play: at a restart the host orders the first pass.
@@ -259,7 +262,7 @@ impl Coach {
             .map_or(best, |case| (case.action, case.worth));
         let is_of_case = |action| matches!(action, Action::Case(_) | Action::PlayOn);
         let better = match again {
-            Some(again) if plays_case && is_of_case(again.action) => CASE_MARGIN,
+            Some(again) if plays_case && is_of_case(again.action) && !disputed => CASE_MARGIN,
             // A kicker that turns round gives a marker beside the ball the time to follow.
             Some(again) if view.phase != Phase::Run => {
                 let poor = if is_poor(&again.action) { POOR_SHARE } else { 1.0 };
@@ -328,6 +331,9 @@ mod tests {
             for robot in &seen.ours {
                 seen.in_play.insert(robot.id);
             }
+            if seen.theirs_within(Point::new(ball.0, ball.1)) < DISPUTED_WITHIN_M {
+                continue;
+            }
             let orders = coach.decide(&seen);
             let Some((who, list)) = coach.rated() else { continue };
             let plays_on = list.iter().find(|rated| rated.action == Action::PlayOn).expect("always listed");
@@ -339,6 +345,31 @@ mod tests {
             broken += u32::from(!keeps);
         }
         assert!(kept > 10 && broken > 10, "{kept} kept for a little, {broken} broken off");
+    }
+
+    /// Robots that retrieve a case in situations drawn at random, again with an opponent at the ball.
+    #[test]
+    fn no_case_begins_at_a_ball_that_an_opponent_disputes() {
+        let mut rng = Xoshiro128PlusPlus::seed_from_u64(8);
+        let mut begun = [0, 0];
+        for _ in 0..200 {
+            let mut within =
+                |from: f32, to: f32| from + (rng.next_u32() >> 8) as f32 / 16_777_216.0 * (to - from);
+            let mut place = |x: [f32; 2]| (within(x[0], x[1]), within(-2.5, 2.5));
+            let ball = place([0.5, 4.0]);
+            let ours = [(-4.4, 0.0), (ball.0 - 0.12, ball.1), place([-1.0, 3.0]), place([0.0, 3.5])];
+            for (disputed, begun) in begun.iter_mut().enumerate() {
+                let near = (ball.0 + 0.12 + if disputed == 1 { 0.0 } else { 1.0 }, ball.1 + 0.1);
+                let mut coach = Coach::new(Team::Ours, Tactics::default(), League::DivisionB);
+                let mut seen = view(ball, &ours, &[(4.4, 0.0), near]);
+                for robot in &seen.ours {
+                    seen.knows_cases.insert(robot.id);
+                }
+                let orders = coach.decide(&seen);
+                *begun += orders.iter().filter(|order| matches!(order.task, Task::Case(_))).count();
+            }
+        }
+        assert!(begun[0] > 10 && begun[1] == 0, "{begun:?}");
     }
 
     /// What the robots are ordered while a ball of 5 m/s crosses the field, tracked with errors of 0.1 m/s:
