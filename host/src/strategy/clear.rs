@@ -260,7 +260,7 @@ mod tests {
         assert_eq!(clearance(&view, &kicks, &view.ours[0], from, |_| false), None);
     }
 
-    /// The robot stood at (-3.32, -0.29) with the ball, was sent round it to kick 43° to the left, and lost it.
+    /// The robot stood there with the ball, was sent round it to kick 43° to the left, and lost it.
     #[test]
     fn a_ball_at_the_front_is_cleared_straight_on_before_an_opponent_comes() {
         let kicks = Kicks::of(League::DivisionB);

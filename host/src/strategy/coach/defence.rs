@@ -91,8 +91,8 @@ impl DefenceState {
         threat::legal(view, at, &threat::ThreatSettings::default())
     }
 
-    /// The task of a field player that is first at a ball before our area: its clearance, by the list. Where it
-    /// has no room behind the ball it comes from the field, and turns it.
+    /// The task of a field player that is first at a ball before our area: its clearance, by the list. Where
+    /// it has no room behind the ball it comes from the field, and turns it.
     pub(super) fn clears_before_our_area(
         &mut self,
         view: &View,
@@ -101,14 +101,19 @@ impl DefenceState {
         ball: &ViewBall,
     ) -> Option<(Task, OrderReason)> {
         let robot = view.our(who).filter(|_| self.keepers_ball == Some(false))?;
-        let lines_up = |ray: Vector<Attack>| {
-            let at = ball.position - ray * BEHIND_BALL_M;
-            let mut mates = view.ours.iter().filter(|mate| mate.id != who && mate.id != view.keeper);
-            !view.in_our_area(at, OFF_OUR_AREA_M)
-                && mates.all(|mate| mate.position.distance(at) > BODIES_APART_M)
-        };
         let face = ball.position + (ball.position - robot.position);
-        Some(self.clears(view, kicks, robot, ball, lines_up, face))
+        Some(self.clears(
+            view,
+            kicks,
+            (robot, ball),
+            |ray| {
+                let at = ball.position - ray * BEHIND_BALL_M;
+                let mut mates = view.ours.iter().filter(|mate| mate.id != who && mate.id != view.keeper);
+                !view.in_our_area(at, OFF_OUR_AREA_M)
+                    && mates.all(|mate| mate.position.distance(at) > BODIES_APART_M)
+            },
+            face,
+        ))
     }
 
     /// The keeper at its place; it clears a ball in our area, and intercepts a shot on its line.
@@ -157,8 +162,8 @@ impl DefenceState {
             && (before || view.in_our_area(ball.position, 0.0))
     }
 
-    /// The keeper's clearance. Where no body fits behind the ball it is taken from a side on which one does, and
-    /// turned.
+    /// The keeper's clearance. Where no body fits behind the ball it is taken from a side on which one does,
+    /// and turned.
     fn keeper_clears(
         &mut self,
         view: &View,
@@ -167,27 +172,31 @@ impl DefenceState {
         ball: &ViewBall,
     ) -> (Task, OrderReason) {
         let from = ball.position;
-        let fits = |ray: Vector<Attack>| {
-            let places = [BEHIND_BALL_M, contact::TOUCHES_WITHIN].map(|off| from - ray * off);
-            places.iter().all(|at| has_room(view, *at))
-        };
         let straight = from - keeper.position;
         let rays = (0..TAKEN_FROM)
             .map(|step| Vector::polar(1.0, Angle::degrees(360.0 / f32::from(TAKEN_FROM) * f32::from(step))));
         let ray = rays
             .filter(|ray| has_room(view, from - *ray * contact::TOUCHES_WITHIN))
             .max_by(|a, b| a.dot(straight).total_cmp(&b.dot(straight)));
-        self.clears(view, kicks, keeper, ball, fits, from + ray.unwrap_or(straight))
+        self.clears(
+            view,
+            kicks,
+            (keeper, ball),
+            |ray| {
+                let places = [BEHIND_BALL_M, contact::TOUCHES_WITHIN].map(|off| from - ray * off);
+                places.iter().all(|at| has_room(view, *at))
+            },
+            from + ray.unwrap_or(straight),
+        )
     }
 
-    /// A clearance by the same list as everyone's, in a direction that `fits` or with a ball at the robot's front,
-    /// looked at again until the ball leaves; without one the ball is taken towards `face`.
+    /// A clearance by the same list as everyone's, in a direction that `fits` or with a ball at the robot's
+    /// front, looked at again until the ball leaves; without one the ball is taken towards `face`.
     fn clears(
         &mut self,
         view: &View,
         kicks: &Kicks,
-        robot: &ViewRobot,
-        ball: &ViewBall,
+        (robot, ball): (&ViewRobot, &ViewBall),
         fits: impl Fn(Vector<Attack>) -> bool,
         face: Point<Attack>,
     ) -> (Task, OrderReason) {
