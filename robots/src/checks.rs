@@ -316,9 +316,10 @@ mod tests {
 
     #[test]
     fn kicks_faster_than_rules_kicker_or_table_are_refused() {
-        assert!(refused(&[("fastest = 5.8 ", "fastest = 6.0 ")]).contains("give at most 5.91"));
+        assert!(refused(&[("fastest = 6.24 ", "fastest = 6.3 ")]).contains("give at most 6.25"));
         assert!(
-            refused(&[("flat = 8.0 ", "flat = 5.0 ")]).contains("kicker.fastest is 5.8, above hardware.flat")
+            refused(&[("flat = 8.0 ", "flat = 5.0 ")])
+                .contains("kicker.fastest is 6.24, above hardware.flat")
         );
         assert!(refused(&[("[6.5, 4500]", "[5.0, 4500]")]).contains("kicker.flat_pulses ends at 5 m/s"));
         assert!(

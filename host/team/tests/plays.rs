@@ -28,16 +28,16 @@ fn linked(mut strategy: impl Strategy + Send + 'static) -> Box<dyn StrategyLink>
     Box::new(move |view: &str| Some(answers(&mut strategy, view).expect("a view")))
 }
 
-/// A robot that takes a pass beside their area at 3 m/s may slide 5 cm into it: 4 fouls in 40 such matches.
+/// A robot may slide into their area or into one that stands: 3 fouls in 20 such matches.
 #[test]
-fn the_fifty_line_team_wins_each_match_against_one_that_stands_with_a_foul_at_most() {
+fn the_fifty_line_team_wins_each_match_against_one_that_stands_and_hardly_fouls() {
     let mut fouls = 0;
-    for seed in 1..=4 {
+    for seed in 1..=16 {
         let [goals, fouls_here, against] = against_idle(seed, 120.0, || linked(FiftyLines::default()));
         assert!(goals >= 1 && against == 0, "seed {seed}: {goals}:{against}");
         fouls += fouls_here;
     }
-    assert!(fouls <= 1, "{fouls} fouls in four matches");
+    assert!(fouls <= 4, "{fouls} fouls in sixteen matches");
 }
 
 /// Orders nothing.
