@@ -44,6 +44,9 @@ const SOONER_WIDTH_S: f32 = 0.3;
 /// turn around the ball or with it takes 1.2 s.
 const RELEASE_S: f32 = 0.25;
 const TURN_S_PER_RAD: f32 = 0.3;
+/// P(goal against) for each radian, as opponents come nearer than they are: half a turn costs less than a way
+/// that is blocked (estimate).
+const WAITS_PER_RAD: f32 = 0.01;
 /// Width of the comparison of release and opponents' arrival, s.
 const RELEASE_WIDTH_S: f32 = 0.2;
 /// Share of the balls that are lost where an opponent comes long before the release: the body shields the
@@ -152,10 +155,14 @@ impl<'v> Release<'v> {
         self.from
     }
 
+    /// Angle by which the robot turns, or goes round the ball, to kick towards `at`, rad.
+    fn turn(&self, at: Point<Attack>) -> f32 {
+        (self.from.direction_to(at) - self.straight).radians().abs().min(math::PI)
+    }
+
     /// P(an opponent has the ball before it is kicked towards `at`).
     pub fn lost(&self, at: Point<Attack>) -> f32 {
-        let turn = (self.from.direction_to(at) - self.straight).radians().abs().min(math::PI);
-        let time = RELEASE_S + TURN_S_PER_RAD * turn;
+        let time = RELEASE_S + TURN_S_PER_RAD * self.turn(at);
         LOST_SHARE_MAX * (1.0 - likely(self.pressed_after - time, RELEASE_WIDTH_S))
     }
 
@@ -222,6 +229,7 @@ impl<'v> Rating<'v> {
         let there = had * view.stakes.of_ours(half, at) + (1.0 - had) * self.lost_at(at);
         let on_the_way = self.lost_at(self.from + (at - self.from) * 0.25);
         self.release.worth(at, past * there + (1.0 - past) * on_the_way)
+            - WAITS_PER_RAD * self.release.turn(at)
     }
 
     /// The worth of a ball that is theirs at `at`.

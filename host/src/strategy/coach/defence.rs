@@ -101,7 +101,7 @@ impl DefenceState {
         ball: &ViewBall,
     ) -> Option<(Task, OrderReason)> {
         let robot = view.our(who).filter(|_| self.keepers_ball == Some(false))?;
-        let face = ball.position + (ball.position - robot.position);
+        let straight = ball.position - robot.position;
         Some(self.clears(
             view,
             kicks,
@@ -112,7 +112,7 @@ impl DefenceState {
                 !view.in_our_area(at, OFF_OUR_AREA_M)
                     && mates.all(|mate| mate.position.distance(at) > BODIES_APART_M)
             },
-            face,
+            ball.position + straight,
         ))
     }
 
