@@ -351,7 +351,7 @@ mod tests {
         assert!(kept > 10 && broken > 10, "{kept} kept for a little, {broken} broken off");
     }
 
-    /// Where the champions' robot turned away with the ball that ours held against its front, and beside that.
+    /// Where the champions' robot turned away with the ball that ours held against it, and beside that.
     #[test]
     fn a_ball_is_disputed_before_our_goal_with_an_opponent_at_it() {
         let disputed = |ball: (f32, f32), opponent| {
