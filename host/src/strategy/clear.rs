@@ -278,7 +278,7 @@ mod tests {
         let from = Point::new(-3.22, -0.26);
         let found = clearance(&view, &kicks, &view.ours[1], from, |_| true).unwrap();
         let turn = (from.direction_to(found.at) - view.ours[1].heading).abs();
-        assert!(turn < 0.2, "{} rad, {found:?}", turn);
+        assert!(turn < 0.2, "{turn} rad, {found:?}");
     }
 
     #[test]
