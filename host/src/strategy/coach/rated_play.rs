@@ -37,10 +37,6 @@ const RESTART_BETTER_BY: f32 = 0.05;
 const POOR_SHARE: f32 = 0.4;
 /// And by this share of what it is worth: places of equal worth do not alternate.
 const BETTER_BY_SHARE: f32 = 0.25;
-/// An opponent this near a ball before our goal, m, disputes it: no case begins or holds its robot there.
-const DISPUTED_WITHIN_M: f32 = 0.25;
-/// This near to it an opponent that wins a ball shoots, m.
-const SHOOTS_WITHIN_M: f32 = 2.5;
 /// This soon before it touches the ball, s, a robot keeps its action until that is worth this much less than
 /// when it was chosen, and half of it.
 const LOCKED_WITHIN_S: f32 = 0.35;
@@ -238,8 +234,7 @@ impl Coach {
         let receives = |id| !defenders.contains(&Some(id));
         let pass = view.proposed_pass(who).filter(|_| self.tactics.bridge);
         let may = |id| id == who || plan.free.contains(&id) && id != view.keeper && receives(id);
-        let disputed = may_play_on && is_disputed(view, from);
-        let retrieved = (self.tactics.bridge && !view.in_play.has(who) && !disputed)
+        let retrieved = (self.tactics.bridge && !view.in_play.has(who))
             .then(|| case_candidate::retrieve(view, &self.open_play.rated.cases, who, from, may))
             .flatten();
         // Robots play cases only while the ball is in play: at a restart the host orders the first pass.
@@ -264,7 +259,7 @@ impl Coach {
             .map_or(best, |case| (case.action, case.worth));
         let is_of_case = |action| matches!(action, Action::Case(_) | Action::PlayOn);
         let better = match again {
-            Some(again) if plays_case && is_of_case(again.action) && !disputed => CASE_MARGIN,
+            Some(again) if plays_case && is_of_case(again.action) => CASE_MARGIN,
             // A kicker that turns round gives a marker beside the ball the time to follow.
             Some(again) if view.phase != Phase::Run => {
                 let poor = if is_poor(&again.action) { POOR_SHARE } else { 1.0 };
@@ -292,11 +287,6 @@ impl Coach {
         self.open_play.rated.list = list;
         action
     }
-}
-
-/// Whether an opponent is at a ball that it would score with.
-fn is_disputed(view: &View, ball: Point<Attack>) -> bool {
-    ball.distance(view.our_goal()) < SHOOTS_WITHIN_M && view.theirs_within(ball) < DISPUTED_WITHIN_M
 }
 
 /// A clearance, or a pass that is hardly received.
@@ -349,17 +339,6 @@ mod tests {
             broken += u32::from(!keeps);
         }
         assert!(kept > 10 && broken > 10, "{kept} kept for a little, {broken} broken off");
-    }
-
-    /// Where the champions' robot turned away with the ball that ours held against it, and beside that.
-    #[test]
-    fn a_ball_is_disputed_before_our_goal_with_an_opponent_at_it() {
-        let disputed = |ball: (f32, f32), opponent| {
-            is_disputed(&view(ball, &[(-4.4, 0.0)], &[opponent]), Point::new(ball.0, ball.1))
-        };
-        assert!(disputed((-3.16, -0.23), (-3.06, -0.25)));
-        assert!(!disputed((-3.16, -0.23), (-2.88, -0.25)), "0.28 m away");
-        assert!(!disputed((-1.5, -0.23), (-1.4, -0.25)), "3 m before our goal");
     }
 
     /// What the robots are ordered while a ball of 5 m/s crosses the field, tracked with errors of 0.1 m/s:

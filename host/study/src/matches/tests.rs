@@ -254,8 +254,8 @@ fn a_host_retrieves_from_the_library_that_its_robots_have() {
     let files = case_tools::Files::from_texts(built_in.name, built_in.rules, &cases);
     let library = Box::leak(Box::new(case_tools::build_without_warnings(&files).unwrap()));
     assert_ne!(library.base().hash(), built_in.base().hash());
-    // 15 in eight matches of half as long; none where the host retrieves from another base.
-    let plan = plan(11, 240.0, 4, &[Team::Reactive.into(), Team::Zone.into()]);
+    // One to seven in each two minutes; none where the host retrieves from another base.
+    let plan = plan(11, 120.0, 4, &[Team::Reactive.into(), Team::Zone.into()]);
     let matches = Matches { base: library.base(), ..matches(plan) };
     let played = matches.play_all(&|| ()).unwrap();
     let retrieved: Vec<_> =
