@@ -182,7 +182,7 @@ mod tests {
     fn fitted_values_replace_theirs_and_every_comment_stays() {
         let ours = robots::built_in("ours").unwrap();
         let kicks =
-            measured("kicks.csv", "pulse_us, speed\n1000,1.1\n2000,2.4\n3000,3.9\n4000,5.2\n5000,6.1\n");
+            measured("kicks.csv", "pulse_us, speed\n1000,1.1\n2000,2.4\n3000,3.9\n4000,5.2\n5000,6.3\n");
         let drives = measured("drives.csv", "distance_m,counts\n1.0,25000\n2.0,50000\n");
         let description = Description::read("ours", ours).unwrap();
         let changes = [
@@ -197,7 +197,7 @@ mod tests {
         // 4096 / (2π · 25000).
         assert!((fresh.number("wheels.radius") - 0.026_076).abs() < 1e-6);
         assert_eq!(fresh.pulses("kicker.flat_pulses").len(), 4);
-        assert_eq!(fresh.pulses("kicker.flat_pulses").last(), Some(&(6.1, 5000)));
+        assert_eq!(fresh.pulses("kicker.flat_pulses").last(), Some(&(6.3, 5000)));
         let added: Vec<_> = once.lines().filter(|line| !ours.lines().any(|had| had == *line)).collect();
         assert_eq!(added.len(), 4, "{added:?}");
         assert!(added.iter().any(|line| line.contains("# estimates; `onetwo robot calibrate`")), "{added:?}");
