@@ -1,15 +1,15 @@
 //! `hidden`: position of a ball that no camera sees: under a robot, or where it was placed; field frame, SI.
 //!
-//! With one of our robots, it is at the robot whose sensor detects it, and after release where that robot
-//! detected it last; of several such robots at the nearest, and at none that it cannot have reached: a stuck
-//! sensor on the other side of the field does not move it there. With theirs, at the one whose front was at
-//! it when it vanished. Tracking leaves a ball that vanished at a robot's front there; where that robot is
-//! ours and its sensor does not detect the ball, the opponent beside it has taken it, or it lies where it
-//! was last seen; where it is theirs and a robot of ours beside it detects the ball, ours has it. At a
-//! restart after a placement it lies where it was placed: the robot that brought it there hid it on the path,
-//! and the last visible place is metres off. Else it lies at its stop position. Without this a robot that
-//! must keep off the ball would approach it as soon as it is hidden, and one that backs off a ball it hides
-//! would search it elsewhere.
+//! With one of our robots, it is at the robot whose sensor detects it, and after release beside where that
+//! robot detected it last; of several such robots at the nearest, and at none that it cannot have reached: a
+//! stuck sensor on the other side of the field does not move it there. With theirs, at the one whose front
+//! was at it when it vanished. Tracking leaves a ball that vanished at a robot's front there; where that
+//! robot is ours and its sensor does not detect the ball, the opponent beside it has taken it, or it lies
+//! where it was last seen; where it is theirs and a robot of ours beside it, or beside the place where it
+//! vanished, detects the ball, ours has it. At a restart after a placement it lies where it was placed: the
+//! robot that brought it there hid it on the path, and the last visible place is metres off. Else it lies at
+//! its stop position. Without this a robot that must keep off the ball would approach it as soon as it is
+//! hidden, and one that backs off a ball it hides would search it elsewhere.
 
 use geometry::{Field, Point, Vector};
 use protocol::{Duration, Instant, RobotId, Who};
@@ -21,9 +21,13 @@ use crate::world::{Ball, Robot, World};
 /// A ball this near the middle of a robot's front may lie in its dribbler opening, m: the opening's half
 /// width and the vision's noise.
 const HIDES_WITHIN_M: f32 = 0.06;
+/// A ball this far beside the middle of a front is not in the opening, m: a ball's diameter.
+const BESIDE_M: f32 = 2.0 * rules::limits::BALL_RADIUS;
 /// Time unseen after which a robot's sensor decides whether it has the ball: two telemetry periods, and
 /// vision's delay.
 const SENSOR_DECIDES_AFTER: Duration = Duration::millis(300);
+/// Time unseen after which the ball is hidden: a frame of slow cameras, and vision's delay.
+const HIDDEN_AFTER: Duration = Duration::millis(60);
 /// A robot's front is this near a ball that it takes off another team's, m: a robot's diameter.
 const TAKES_WITHIN_M: f32 = 2.0 * rules::limits::ROBOT_RADIUS;
 /// No ball moves faster, m/s: the rules' limit of a kick, 6.5 m/s, and 0.5 m/s by which kickers err.
@@ -34,6 +38,10 @@ const BALL_SPEED_MAX_M_S: f32 = 7.0;
 pub(crate) struct HiddenBall {
     /// The ball as it was when last seen, or detected by a sensor of ours since.
     last: Option<Ball>,
+    /// Where cameras last saw it.
+    vanished: Option<Point<Field>>,
+    /// When one of our sensors last detected it.
+    felt: Option<Instant>,
     /// The opponent that hides it from all cameras, if one does.
     by: Option<Who>,
     /// Place where it was put for the restart that is to come.
@@ -65,6 +73,9 @@ impl HiddenBall {
             };
             if now.since(ball.seen) < SENSOR_DECIDES_AFTER || !world.ours(us).any(contradicts) {
                 self.last = Some(ball);
+                if now.since(ball.seen) < HIDDEN_AFTER {
+                    self.vanished = Some(ball.position);
+                }
                 self.by = world.theirs(us).find(hides).map(|robot| robot.who);
                 return;
             }
@@ -76,10 +87,13 @@ impl HiddenBall {
             // Where it lies if it is released: a ball released at speed is soon visible.
             (last.position, last.velocity) = (dribbler_point(robot), Vector::default());
             (last.height, last.climb) = (0.0, 0.0);
-            self.by = None;
+            (self.by, self.felt) = (None, Some(now));
         }
         let theirs = |robot: &&Robot| Some(robot.who) == self.by;
         let hider = holder.or_else(|| world.theirs(us).find(theirs));
+        if hider.is_none() && self.felt.is_none_or(|felt| now.since(felt) >= SENSOR_DECIDES_AFTER) {
+            self.move_beside(world.ours(us).filter(|robot| feels(robot.who.id) == Some(false)));
+        }
         let lies = matches!(game.phase, Phase::Stop | Phase::FreeKick(_));
         let (position, velocity) = match (hider, self.placed, &self.last) {
             (Some(robot), ..) => (dribbler_point(robot), robot.velocity),
@@ -91,9 +105,10 @@ impl HiddenBall {
         world.ball = Some(Ball { velocity, confidence: 0.0, ..Ball::at_rest(position, seen) });
     }
 
-    /// Whether the ball was last so near to the robot's front that the robot may have taken it.
+    /// Whether the ball was last, or vanished, so near to the robot's front that the robot may have taken it.
     fn was_beside(&self, robot: &Robot) -> bool {
-        self.last.is_some_and(|last| dribbler_point(robot).distance(last.position) < TAKES_WITHIN_M)
+        let mut places = self.last.map(|last| last.position).into_iter().chain(self.vanished);
+        places.any(|place| dribbler_point(robot).distance(place) < TAKES_WITHIN_M)
     }
 
     /// Of our robots whose sensors detect the ball, the one nearest to where it was last, if the ball can
@@ -106,6 +121,17 @@ impl HiddenBall {
             .filter(|(off, _)| *off < reach)
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, robot)| robot)
+    }
+
+    /// Moves a ball out of the opening of a robot whose sensor does not detect it: it lies beside.
+    fn move_beside<'a>(&mut self, mut unfelt: impl Iterator<Item = &'a Robot>) {
+        let Some(last) = &mut self.last else { return };
+        let robot = unfelt.find(|robot| dribbler_point(robot).distance(last.position) < BESIDE_M);
+        if let Some(robot) = robot {
+            let side = robot.pose.to_body(last.position).y();
+            let beside = Point::new(rules::limits::ROBOT_RADIUS, BESIDE_M.copysign(side));
+            (last.position, last.velocity) = (robot.pose.to_field(beside), Vector::default());
+        }
     }
 
     /// The opponent that has taken a ball which vanished between it and one of ours: whose front is nearest
@@ -173,6 +199,11 @@ mod tests {
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(3.0));
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, |_| Some(true)), Some(1.09));
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(1.09), "let go, and still hidden");
+        let lies = hidden.last.unwrap().position;
+        hidden.felt = None;
+        x_of(&mut hidden, &world, Phase::Run, NO_ROBOT);
+        let beside = hidden.last.unwrap().position;
+        assert_eq!((lies.y(), beside.y().abs()), (0.0, BESIDE_M), "no longer in the opening");
         world.ball = Some(ball(2.1));
         x_of(&mut hidden, &world, Phase::Run, NO_ROBOT);
         world.ball = None;
@@ -251,6 +282,23 @@ mod tests {
             far.fill(Instant(ms * 1000), &mut world, Colour::Yellow, &Game::default(), |_| Some(true));
             assert_eq!(world.ball.unwrap().position.x(), 1.09, "half a metre off: a stuck sensor");
         }
+    }
+
+    /// The opponent turned away with what tracking left at its front before the sensor of ours detected it.
+    #[test]
+    fn a_ball_is_at_our_robot_that_feels_it_where_it_vanished() {
+        let mut hidden = HiddenBall::default();
+        let mut at = |ms: u64, x_of_theirs: f32, feels: fn(RobotId) -> Option<bool>| {
+            let mut world = World::default();
+            world.put(robot(Who::yellow(RobotId::ZERO), 1.0));
+            world.put(robot(Who::blue(RobotId::ZERO), x_of_theirs));
+            world.ball = Some(ball(x_of_theirs + 0.09));
+            hidden.fill(Instant(ms * 1000), &mut world, Colour::Yellow, &Game::default(), feels);
+            (world.ball.unwrap().position.x() * 1000.0).round()
+        };
+        assert_eq!(at(0, 1.05, NO_ROBOT), 1140.0, "seen");
+        assert_eq!(at(400, 1.5, NO_ROBOT), 1590.0, "gone with theirs");
+        assert_eq!(at(500, 1.6, |_| Some(true)), 1090.0, "ours has had it");
     }
 
     #[test]
