@@ -1,18 +1,20 @@
 //! `conduct`: plays matches and prints how they were played: a line a match, then the total: time in each
 //! phase of the game, ball placements, the longest time that one robot held the ball, no-progress stops,
-//! fouls.
+//! fouls, and how our robots handle the ball.
 //!
 //! `cargo run --release -p onetwo-study --example conduct -- LEAGUE WORLD OPPONENT FIRST_SEED COUNT SECONDS`,
 //! as in `conduct division-b random ours 1 200 120`; ours is blue, and with `random` each match has the
 //! random world of its own seed. `story` as a seventh argument adds each offence, each ball out and each stop
 //! for no progress with the robots around it. `conduct LEAGUE WORLD` prints that world's numbers.
 
+mod at_ball;
 mod stoppages;
 
 use std::collections::BTreeMap;
 
 use arena::attack::AttackCounts;
 use arena::game::{Game, GameConfig, GameReport, Watcher, play};
+use at_ball::AtBall;
 use casebase::CaseBase;
 use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::{WorldChoice, WorldModel};
@@ -91,6 +93,7 @@ struct Account {
     events: BTreeMap<&'static str, u32>,
     phases: BTreeMap<&'static str, f64>,
     stoppages: Stoppages,
+    at_ball: AtBall,
 }
 
 impl Watcher for Account {
@@ -102,6 +105,7 @@ impl Watcher for Account {
         }
         self.seen = events.len();
         self.stoppages.look(game);
+        self.at_ball.look(game);
     }
 }
 
@@ -249,5 +253,6 @@ fn sum(played: &[(GameReport, Account)], opponent: MatchTeam) {
             f64::from(bin.received) / f64::from(bin.passes)
         );
     }
+    at_ball::print(played.iter().map(|(_, account)| &account.at_ball));
     stoppages::print(played.len(), all, played.iter().map(|(_, account)| &account.stoppages));
 }
