@@ -24,7 +24,7 @@ const HIDDEN_AFTER: Duration = Duration::millis(600);
 /// A hidden ball farther from where it is believed is lost, m.
 const LOST_BEYOND_M: f32 = 0.4;
 /// One tick, s.
-const TICK_S: f64 = 0.01;
+const TICK_S: f64 = arena::game::TICK_US as f64 * 1e-6;
 
 /// What was seen in a match.
 #[derive(Clone, Debug, Default)]
@@ -41,10 +41,13 @@ pub(super) struct AtBall {
     /// Hidden spells, and those at whose end the belief was lost.
     hidden: u32,
     lost: u32,
+    /// Since when a ball lies beside one of ours, which does not carry it.
     beside_since: Option<f64>,
     /// Since when ours is near a ball that lies, and whether it has touched it.
     near: Option<(f64, bool)>,
+    /// Robot of ours that was ordered to kick when it touched the ball, and since when.
     contact: Option<(Who, f64)>,
+    /// Passer, receiver and direction of the pass that is ordered.
     pass: Option<(RobotId, RobotId, Vector<Attack>)>,
     /// How far off a ball hidden for long enough was believed last, m; infinite: nowhere.
     believed: Option<f32>,
@@ -76,15 +79,7 @@ impl AtBall {
         let lies = ball.velocity.norm() < LIES_M_S;
         let carries =
             robot.touching && (robot.velocity.norm() > CARRIES_M_S || robot.turning.abs() > CARRIES_RAD_S);
-        if near && lies && !carries {
-            let since = *self.beside_since.get_or_insert(now);
-            if now - since >= LEFT_AFTER_S {
-                // The spell counts from its start.
-                self.left += if now - since < LEFT_AFTER_S + TICK_S { LEFT_AFTER_S } else { TICK_S };
-            }
-        } else {
-            self.beside_since = None;
-        }
+        self.count_left(now, near && lies && !carries);
         self.near = (near && lies).then_some(self.near.unwrap_or((now, false)));
         let at_ball = |who: Who| {
             let robots = world.robots().iter().filter(|robot| robot.who == who);
@@ -112,6 +107,18 @@ impl AtBall {
                 }
                 _ => {}
             }
+        }
+    }
+
+    fn count_left(&mut self, now: f64, beside: bool) {
+        if !beside {
+            self.beside_since = None;
+            return;
+        }
+        let lasts = now - *self.beside_since.get_or_insert(now);
+        if lasts >= LEFT_AFTER_S {
+            // The spell counts from its start.
+            self.left += if lasts < LEFT_AFTER_S + TICK_S { LEFT_AFTER_S } else { TICK_S };
         }
     }
 
