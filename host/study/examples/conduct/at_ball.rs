@@ -19,6 +19,8 @@ const CARRIES_M_S: f32 = 0.1;
 const CARRIES_RAD_S: f32 = 0.5;
 /// A pass whose direction changes by more is another one, rad: 3°.
 const SAME_WITHIN_RAD: f32 = 0.052;
+/// A robot that faces the direction of its kick within this is aimed, rad: 15°.
+const AIMED_WITHIN_RAD: f32 = 0.26;
 /// Time unseen from which a ball is hidden.
 const HIDDEN_AFTER: Duration = Duration::millis(600);
 /// A hidden ball farther from where it is believed is lost, m.
@@ -33,9 +35,10 @@ pub(super) struct AtBall {
     running: f64,
     ordered: f64,
     left: f64,
-    /// Times from near the ball to contact, and from contact to the kick, s.
+    /// Times from near the ball to contact, s.
     approaches: Vec<f64>,
-    releases: Vec<f64>,
+    /// Kicks of robots that were ordered to kick at contact.
+    releases: Vec<Release>,
     /// Changes of receiver or direction while the ball lies.
     changes: u32,
     /// Hidden spells, and those at whose end the belief was lost.
@@ -45,12 +48,32 @@ pub(super) struct AtBall {
     beside_since: Option<f64>,
     /// Since when ours is near a ball that lies, and whether it has touched it.
     near: Option<(f64, bool)>,
-    /// Robot of ours that was ordered to kick when it touched the ball, and since when.
-    contact: Option<(Who, f64)>,
+    /// Robot of ours that was ordered to kick when it touched the ball.
+    contact: Option<Contact>,
     /// Passer, receiver and direction of the pass that is ordered.
     pass: Option<(RobotId, RobotId, Vector<Attack>)>,
     /// How far off a ball hidden for long enough was believed last, m; infinite: nowhere.
     believed: Option<f32>,
+}
+
+/// A robot with the ball, from contact to its kick.
+#[derive(Clone, Copy, Debug)]
+struct Contact {
+    who: Who,
+    at_s: f64,
+    /// Whether it faced the direction of its kick at contact.
+    aimed: bool,
+    /// Direction of the kick that is ordered, and whether it changed since contact.
+    way: Option<Vector<Attack>>,
+    changed: bool,
+}
+
+/// A kick.
+#[derive(Clone, Copy, Debug)]
+struct Release {
+    after_s: f64,
+    aimed: bool,
+    changed: bool,
 }
 
 impl AtBall {
@@ -87,7 +110,13 @@ impl AtBall {
         };
         // A kicked ball has left before its event is read.
         let kicked = game.events().iter().any(|event| matches!(event, PhysicsEvent::Kicked { .. }));
-        self.contact = self.contact.filter(|(who, _)| kicked || at_ball(*who));
+        self.contact = self.contact.filter(|contact| kicked || at_ball(contact.who));
+        if let Some(contact) = &mut self.contact
+            && let Some((_, way)) = kick_of(game, contact.who)
+        {
+            contact.changed |= contact.way.is_some_and(|before| way.dot(before) < SAME_WITHIN_RAD.cos());
+            contact.way = Some(way);
+        }
         for event in game.events() {
             match *event {
                 PhysicsEvent::Touched { robot, .. } => {
@@ -97,13 +126,20 @@ impl AtBall {
                     {
                         self.approaches.push(now - *since);
                     }
-                    if self.contact.is_none_or(|(who, _)| who != robot) {
-                        self.contact = is_to_kick(game, robot).then_some((robot, now));
+                    if self.contact.is_none_or(|contact| contact.who != robot) {
+                        self.contact = kick_of(game, robot).map(|(ahead, way)| {
+                            let aimed = ahead.dot(way) > AIMED_WITHIN_RAD.cos();
+                            Contact { who: robot, at_s: now, aimed, way: Some(way), changed: false }
+                        });
                     }
                 }
                 PhysicsEvent::Kicked { robot, .. } => {
-                    self.releases
-                        .extend(self.contact.take().filter(|(who, _)| *who == robot).map(|(_, at)| now - at));
+                    let contact = self.contact.take().filter(|contact| contact.who == robot);
+                    self.releases.extend(contact.map(|Contact { at_s, aimed, changed, .. }| Release {
+                        after_s: now - at_s,
+                        aimed,
+                        changed,
+                    }));
                 }
                 _ => {}
             }
@@ -161,13 +197,16 @@ impl AtBall {
     }
 }
 
-/// Whether our host has ordered that robot of ours to kick or pass.
-fn is_to_kick(game: &Game<'_>, robot: Who) -> bool {
-    robot.colour == Colour::Blue
-        && game.host(Colour::Blue).orders().iter().any(|order| {
-            order.robot == robot.id
-                && matches!(order.task, Task::Kick { .. } | Task::Pass { ready: true, .. })
-        })
+/// Heading of that robot of ours, and direction of the kick or pass that our host has ordered it.
+fn kick_of(game: &Game<'_>, who: Who) -> Option<(Vector<Attack>, Vector<Attack>)> {
+    let host = game.host(Colour::Blue);
+    let order = host.orders().iter().find(|order| who.colour == Colour::Blue && order.robot == who.id)?;
+    let (Task::Kick { at, .. } | Task::Pass { at, ready: true, .. }) = order.task else { return None };
+    let robot = game.world().robots().iter().find(|robot| robot.who == who)?;
+    let flip = Flip::defending(host.game().own_goal(Colour::Blue).unwrap_or(GoalEnd::Negative));
+    let me = flip.point(robot.pose.position);
+    let ahead = flip.point(robot.pose.position + Vector::polar(1.0, robot.pose.heading)) - me;
+    Some((ahead, (at - me).unit()?))
 }
 
 /// Prints the sums of all matches.
@@ -183,21 +222,29 @@ pub(super) fn print<'a>(matches: impl Iterator<Item = &'a AtBall>) {
         sum.hidden += one.hidden;
         sum.lost += one.lost;
     }
-    sum.approaches.sort_unstable_by(f64::total_cmp);
-    sum.releases.sort_unstable_by(f64::total_cmp);
-    let at = |values: &[f64], share: f64| {
+    let quantile = |values: &mut Vec<f64>, share: f64| {
+        values.sort_unstable_by(f64::total_cmp);
         values.get((share * values.len().saturating_sub(1) as f64) as usize).copied().unwrap_or(f64::NAN)
     };
     println!(
-        "at the ball: left for {:.1} % of {:.0} s in play; from {NEAR_M} m to contact {:.2} s in the median, to the kick {:.2} \
-         s, p90 {:.2} ({} kicks)",
+        "at the ball: left for {:.1} % of {:.0} s in play; from {NEAR_M} m to contact {:.2} s in the median",
         100.0 * sum.left / sum.running.max(TICK_S),
         sum.running,
-        at(&sum.approaches, 0.5),
-        at(&sum.releases, 0.5),
-        at(&sum.releases, 0.9),
-        sum.releases.len()
+        quantile(&mut sum.approaches, 0.5),
     );
+    let print_kicks = |name: &str, kicks: &dyn Fn(&Release) -> bool| {
+        let kept = sum.releases.iter().filter(|kick| kicks(kick));
+        let mut after: Vec<f64> = kept.map(|kick| kick.after_s).collect();
+        let (median, most) = (quantile(&mut after, 0.5), quantile(&mut after, 0.9));
+        println!(
+            "from contact to the kick{name}: median {median:.2} s, 90 % {most:.2} s ({} kicks)",
+            after.len()
+        );
+    };
+    print_kicks("", &|_| true);
+    print_kicks(", aimed at contact", &|kick| kick.aimed && !kick.changed);
+    print_kicks(", not aimed at contact", &|kick| !kick.aimed && !kick.changed);
+    print_kicks(", another direction ordered after contact", &|kick| kick.changed);
     println!(
         "passes: {} changes in {:.0} s ({:.2} a second); hidden for 0.6 s: {} times, lost {} ({:.1} %)",
         sum.changes,
