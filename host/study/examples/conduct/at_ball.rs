@@ -37,8 +37,8 @@ pub(super) struct AtBall {
     left: f64,
     /// Times from near the ball to contact, s.
     approaches: Vec<f64>,
-    /// Kicks of robots that were ordered to kick at contact.
-    releases: Vec<Release>,
+    /// Times from contact to the kick of robots that were ordered to kick at contact, s.
+    releases: Vec<(Aim, f64)>,
     /// Changes of receiver or direction while the ball lies.
     changes: u32,
     /// Hidden spells, and those at whose end the belief was lost.
@@ -61,19 +61,20 @@ pub(super) struct AtBall {
 struct Contact {
     who: Who,
     at_s: f64,
-    /// Whether it faced the direction of its kick at contact.
-    aimed: bool,
-    /// Direction of the kick that is ordered, and whether it changed since contact.
-    way: Option<Vector<Attack>>,
-    changed: bool,
+    aim: Aim,
+    /// Direction of the kick that was ordered last.
+    way: Vector<Attack>,
 }
 
-/// A kick.
-#[derive(Clone, Copy, Debug)]
-struct Release {
-    after_s: f64,
-    aimed: bool,
-    changed: bool,
+/// How a robot comes to face the direction of its kick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Aim {
+    /// It did at contact.
+    AtContact,
+    /// It turned after contact.
+    Turned,
+    /// Another direction was ordered after contact.
+    Changed,
 }
 
 impl AtBall {
@@ -114,8 +115,10 @@ impl AtBall {
         if let Some(contact) = &mut self.contact
             && let Some((_, way)) = kick_of(game, contact.who)
         {
-            contact.changed |= contact.way.is_some_and(|before| way.dot(before) < SAME_WITHIN_RAD.cos());
-            contact.way = Some(way);
+            if way.dot(contact.way) < SAME_WITHIN_RAD.cos() {
+                contact.aim = Aim::Changed;
+            }
+            contact.way = way;
         }
         for event in game.events() {
             match *event {
@@ -129,17 +132,14 @@ impl AtBall {
                     if self.contact.is_none_or(|contact| contact.who != robot) {
                         self.contact = kick_of(game, robot).map(|(ahead, way)| {
                             let aimed = ahead.dot(way) > AIMED_WITHIN_RAD.cos();
-                            Contact { who: robot, at_s: now, aimed, way: Some(way), changed: false }
+                            let aim = if aimed { Aim::AtContact } else { Aim::Turned };
+                            Contact { who: robot, at_s: now, aim, way }
                         });
                     }
                 }
                 PhysicsEvent::Kicked { robot, .. } => {
                     let contact = self.contact.take().filter(|contact| contact.who == robot);
-                    self.releases.extend(contact.map(|Contact { at_s, aimed, changed, .. }| Release {
-                        after_s: now - at_s,
-                        aimed,
-                        changed,
-                    }));
+                    self.releases.extend(contact.map(|contact| (contact.aim, now - contact.at_s)));
                 }
                 _ => {}
             }
@@ -170,9 +170,7 @@ impl AtBall {
             return;
         };
         self.ordered += TICK_S;
-        let goal = host.game().own_goal(Colour::Blue).unwrap_or(GoalEnd::Negative);
-        let flip = Flip::defending(goal);
-        let Some(way) = (at - flip.point(ball.position)).unit() else { return };
+        let Some(way) = (at - flip_of(game).point(ball.position)).unit() else { return };
         if let Some((passer, to, before)) = self.pass
             && passer == who
             && (to != receiver || way.dot(before) < SAME_WITHIN_RAD.cos())
@@ -199,14 +197,19 @@ impl AtBall {
 
 /// Heading of that robot of ours, and direction of the kick or pass that our host has ordered it.
 fn kick_of(game: &Game<'_>, who: Who) -> Option<(Vector<Attack>, Vector<Attack>)> {
-    let host = game.host(Colour::Blue);
-    let order = host.orders().iter().find(|order| who.colour == Colour::Blue && order.robot == who.id)?;
+    let mut orders = game.host(Colour::Blue).orders().iter();
+    let order = orders.find(|order| who.colour == Colour::Blue && order.robot == who.id)?;
     let (Task::Kick { at, .. } | Task::Pass { at, ready: true, .. }) = order.task else { return None };
     let robot = game.world().robots().iter().find(|robot| robot.who == who)?;
-    let flip = Flip::defending(host.game().own_goal(Colour::Blue).unwrap_or(GoalEnd::Negative));
-    let me = flip.point(robot.pose.position);
-    let ahead = flip.point(robot.pose.position + Vector::polar(1.0, robot.pose.heading)) - me;
-    Some((ahead, (at - me).unit()?))
+    let flip = flip_of(game);
+    let ahead = flip.vector(Vector::polar(1.0, robot.pose.heading));
+    Some((ahead, (at - flip.point(robot.pose.position)).unit()?))
+}
+
+/// From the field to our host's attack frame.
+fn flip_of(game: &Game<'_>) -> Flip {
+    let goal = game.host(Colour::Blue).game().own_goal(Colour::Blue);
+    Flip::defending(goal.unwrap_or(GoalEnd::Negative))
 }
 
 /// Prints the sums of all matches.
@@ -232,19 +235,21 @@ pub(super) fn print<'a>(matches: impl Iterator<Item = &'a AtBall>) {
         sum.running,
         quantile(&mut sum.approaches, 0.5),
     );
-    let print_kicks = |name: &str, kicks: &dyn Fn(&Release) -> bool| {
-        let kept = sum.releases.iter().filter(|kick| kicks(kick));
-        let mut after: Vec<f64> = kept.map(|kick| kick.after_s).collect();
+    let kinds = [
+        ("", None),
+        (", aimed at contact", Some(Aim::AtContact)),
+        (", turned after contact", Some(Aim::Turned)),
+        (", another direction ordered after contact", Some(Aim::Changed)),
+    ];
+    for (name, aim) in kinds {
+        let kept = sum.releases.iter().filter(|(of, _)| aim.is_none_or(|aim| aim == *of));
+        let mut after: Vec<f64> = kept.map(|(_, after)| *after).collect();
         let (median, most) = (quantile(&mut after, 0.5), quantile(&mut after, 0.9));
         println!(
             "from contact to the kick{name}: median {median:.2} s, 90 % {most:.2} s ({} kicks)",
             after.len()
         );
-    };
-    print_kicks("", &|_| true);
-    print_kicks(", aimed at contact", &|kick| kick.aimed && !kick.changed);
-    print_kicks(", not aimed at contact", &|kick| !kick.aimed && !kick.changed);
-    print_kicks(", another direction ordered after contact", &|kick| kick.changed);
+    }
     println!(
         "passes: {} changes in {:.0} s ({:.2} a second); hidden for 0.6 s: {} times, lost {} ({:.1} %)",
         sum.changes,
