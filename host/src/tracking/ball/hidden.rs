@@ -23,6 +23,9 @@ use crate::world::{Ball, Robot, World};
 const HIDES_WITHIN_M: f32 = 0.06;
 /// A ball this far beside the middle of a front is not in the opening, m: a ball's diameter.
 const BESIDE_M: f32 = 2.0 * rules::limits::BALL_RADIUS;
+/// A sensor detects a ball that is this near to the front, m: less than the 2 cm that break beams reach
+/// (`hil-sim`'s worlds), and more than the error of what is seen (0.01 m).
+const FELT_WITHIN_M: f32 = 0.015;
 /// Time unseen after which a robot's sensor decides whether it has the ball: two telemetry periods, and
 /// vision's delay.
 const SENSOR_DECIDES_AFTER: Duration = Duration::millis(300);
@@ -123,10 +126,14 @@ impl HiddenBall {
             .map(|(_, robot)| robot)
     }
 
-    /// Moves a ball out of the opening of a robot whose sensor does not detect it: it lies beside.
+    /// Moves a ball out of the opening of a robot whose sensor does not detect it: it lies beside. One that
+    /// lies farther before the front stays where it is: there the robot hides it too, and does not feel it.
     fn move_beside<'a>(&mut self, mut unfelt: impl Iterator<Item = &'a Robot>) {
         let Some(last) = &mut self.last else { return };
-        let robot = unfelt.find(|robot| dribbler_point(robot).distance(last.position) < BESIDE_M);
+        let robot = unfelt.find(|robot| {
+            let seen = robot.pose.to_body(last.position);
+            seen.x().abs() < rules::limits::ROBOT_RADIUS + FELT_WITHIN_M && seen.y().abs() < BESIDE_M
+        });
         if let Some(robot) = robot {
             let side = robot.pose.to_body(last.position).y();
             let beside = Point::new(rules::limits::ROBOT_RADIUS, BESIDE_M.copysign(side));
@@ -208,6 +215,22 @@ mod tests {
         x_of(&mut hidden, &world, Phase::Run, NO_ROBOT);
         world.ball = None;
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(2.09));
+    }
+
+    /// A robot on its way to it hides it from 4 cm on, and its sensor reaches 2 cm.
+    #[test]
+    fn a_ball_that_lies_before_a_front_unseen_and_unfelt_stays_where_it_was_seen() {
+        let at = |x_of_ball: f32| {
+            let (mut hidden, mut world) = (HiddenBall::default(), World::default());
+            world.put(robot(Who::yellow(RobotId::ZERO), 1.0));
+            world.ball = Some(Ball::at_rest(Point::new(x_of_ball, 0.0), Instant(1_000_000)));
+            x_of(&mut hidden, &world, Phase::Run, NO_ROBOT);
+            world.ball = None;
+            x_of(&mut hidden, &world, Phase::Run, NO_ROBOT);
+            hidden.last.unwrap().position
+        };
+        assert_eq!(at(1.13), Point::new(1.13, 0.0));
+        assert_eq!(at(1.1).y().abs(), BESIDE_M, "it would be felt there");
     }
 
     #[test]
