@@ -25,6 +25,10 @@ const WALL_BEYOND_M: f32 = 2.2;
 /// Time by which another robot must be sooner at the ball to take a placement over, s: as long as fetching it
 /// takes; and as usual of one that has not brought the ball nearer for this long.
 const PLACER_CHANGE_S: f32 = 4.0;
+/// The same while it is still on its way, farther from the ball than this, m: a change costs no more than a
+/// turn.
+const PLACER_AT_BALL_M: f32 = 0.6;
+const PLACER_FAR_CHANGE_S: f32 = 0.8;
 const PLACER_STUCK_AFTER: Duration = Duration::millis(6_000);
 /// Time for which the robot that brings the ball is chosen anew: before, it was chosen for a stop.
 const PLACER_CHOSEN_WITHIN: Duration = Duration::millis(100);
@@ -79,7 +83,12 @@ impl Coach {
             let stuck =
                 self.restart.placing.is_some_and(|(_, since)| view.now.since(since) > PLACER_STUCK_AFTER);
             let chosen = self.age(view) > PLACER_CHOSEN_WITHIN && !stuck;
-            let worth = if chosen { PLACER_CHANGE_S } else { roles::WORTH };
+            let placer = self.roles.ball_player.filter(|_| chosen).and_then(|id| view.our(id));
+            let worth = match placer.map(|robot| robot.position.distance(ball.position)) {
+                Some(off) if off < PLACER_AT_BALL_M => PLACER_CHANGE_S,
+                Some(_) => PLACER_FAR_CHANGE_S,
+                None => roles::WORTH,
+            };
             let first = roles::choose(field_players, self.roles.ball_player, worth, |robot| {
                 roles::time_to(robot, ball.position)
             });
@@ -264,5 +273,33 @@ impl Coach {
         }
         self.defend(plan, true);
         self.spread(plan);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::tactics::Tactics;
+    use super::super::super::view::tests::view;
+    use super::*;
+    use crate::strategy::Team;
+    use geometry::Vector;
+    use rules::League;
+
+    #[test]
+    fn a_sooner_robot_takes_a_placement_over_while_the_first_is_on_its_way() {
+        for (off, takes_over) in [(3.0, true), (0.1, false)] {
+            let mut coach = Coach::new(Team::Ours, Tactics::default(), League::DivisionB);
+            let mut seen = view((2.0, 0.0), &[(-4.4, 0.0), (2.0 - off, 0.0), (-3.5, 2.0)], &[]);
+            seen.phase = Phase::BallPlacement(Side::Ours);
+            seen.placement = Some(Point::new(-1.0, 0.0));
+            coach.decide(&seen);
+            seen.now = Instant(seen.now.0 + 500_000);
+            // The first moves off as fast as it backs away with a ball, the other has come.
+            seen.ours[1].velocity = Vector::new(-2.0, 0.0);
+            seen.ours[2].position = Point::new(2.0, 0.5);
+            let orders = coach.decide(&seen);
+            let placer = orders.iter().find(|order| matches!(order.task, Task::PlaceBall { .. })).unwrap();
+            assert_eq!(placer.robot == seen.ours[2].id, takes_over, "{off} m off");
+        }
     }
 }
