@@ -70,8 +70,11 @@ pub fn approach(belief: &Belief, ball: &BelievedBall, face: Angle, speed: f32) -
     let off = (face - belief.pose.heading).abs();
     // The farther back, the wider the approach; at the ball itself a finger's breadth.
     let room = along - BALL_AT;
-    let width = LINE_HALF_WIDTH_M + WIDENS * room.clamp(0.0, 0.3);
-    let drifts = belief.is_placing() && ahead.cross(belief.velocity).abs() > DRIFTS;
+    // On its way in it corrects what it is beside: stopping for it, it steps past the line and back.
+    let goes_in = belief.is_placing() && belief.velocity.dot(ahead) > GOES_IN;
+    let line = if goes_in { OPENING_HALF_WIDTH_M } else { LINE_HALF_WIDTH_M };
+    let width = line + WIDENS * room.clamp(0.0, 0.3);
+    let drifts = belief.is_placing() && ahead.cross(belief.velocity).abs() > DRIFTS && !goes_in;
     if along > 0.0 && room < GO_IN_FROM && beside.abs() < width && off < ALIGNED && !drifts {
         let to = ball.position - ahead * (BALL_AT - PRESS);
         // A ball that still moves a little goes on while the robot comes.
@@ -231,6 +234,9 @@ const PLACING_STAND_OFF: f32 = 0.1;
 const PRESS: f32 = 0.02;
 /// Beside the line over the ball: half of the opening's half width, m.
 const LINE_HALF_WIDTH_M: f32 = 0.015;
+/// The same of one that moves towards it faster than the second, m/s, where there is time: the opening.
+const OPENING_HALF_WIDTH_M: f32 = 0.03;
+const GOES_IN: f32 = 0.05;
 /// So far beside it a robot before the ball steps aside to it, m.
 const SIDESTEPS: f32 = 0.1;
 /// Faster across than this it would come beside the ball, m/s.
@@ -283,6 +289,20 @@ mod tests {
         // Beside it, it does not.
         let b = belief((-BALL_AT - 0.02, 0.04, 0.0), (0.0, 0.0));
         assert!(matches!(approach(&b, &b.ball.unwrap(), Angle::ZERO, GO_IN), Approach::Around(_)));
+    }
+
+    #[test]
+    fn a_placer_that_goes_in_corrects_what_it_is_beside_on_the_way() {
+        let mut b = belief((-BALL_AT - 0.04, 0.025, 0.0), (0.0, 0.0));
+        b.game.phase = Phase::BallPlacement(rules::Side::Ours);
+        let goes_in = |b: &crate::belief::Belief| {
+            matches!(approach(b, &b.ball.unwrap(), Angle::ZERO, GO_IN), Approach::In(_))
+        };
+        assert!(!goes_in(&b), "from rest it steps aside first");
+        b.velocity = Vector::new(0.1, -0.15);
+        assert!(goes_in(&b));
+        b.pose.position = Point::new(-BALL_AT - 0.04, 0.045);
+        assert!(!goes_in(&b), "it would push the ball with its edge");
     }
 
     #[test]

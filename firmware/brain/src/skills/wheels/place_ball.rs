@@ -293,7 +293,8 @@ fn next(
             // A sensor that touches flickers while the ball is there; cameras show one that is not.
             let seen_off = belief.dribbler_point().distance(ball.position) > SEEN_OFF;
             let falls = gone > if seen_off { FLICKERS } else { MISSES };
-            if falls && !lost {
+            // A ball that rolled by was never in the grip, and says nothing of it.
+            if falls && !lost && felt.since(placement.since) > SEATS {
                 placement.lost(felt, belief.velocity.norm());
             }
             Placing::Pulling { felt, out, loose: gone > FLICKERS, lost: lost || falls }
@@ -457,13 +458,28 @@ mod tests {
         b.holds_ball = true;
         let mut placement = Placement::default();
         place_ball(Instant(1_000_000), &mut placement, &b, at);
+        // Felt for 0.2 s.
+        let felt = Instant(1_200_000);
+        placement.placing = Placing::Pulling { felt, out: None, loose: false, lost: false };
         b.holds_ball = false;
-        place_ball(Instant(1_100_000), &mut placement, &b, at);
+        place_ball(Instant(1_300_000), &mut placement, &b, at);
         assert!(placement.grip >= 1.0, "{placement:?}");
         // Shown away from the front it is lost.
         b.ball.as_mut().unwrap().position = Point::new(BALL_AT + 0.08, 0.0);
-        place_ball(Instant(1_110_000), &mut placement, &b, at);
+        place_ball(Instant(1_310_000), &mut placement, &b, at);
         assert!(placement.grip < 1.0, "{placement:?}");
+    }
+
+    #[test]
+    fn a_ball_that_rolls_by_the_front_is_no_loss() {
+        let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
+        b.holds_ball = true;
+        let mut placement = Placement::default();
+        let at = Point::new(-2.0, 0.0);
+        place_ball(Instant(1_000_000), &mut placement, &b, at);
+        (b.holds_ball, b.ball.as_mut().unwrap().position) = (false, Point::new(BALL_AT, 0.1));
+        place_ball(Instant(1_300_000), &mut placement, &b, at);
+        assert_eq!(placement.grip, 1.0, "{placement:?}");
     }
 
     #[test]

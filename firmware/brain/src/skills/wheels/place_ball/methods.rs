@@ -213,7 +213,7 @@ const TIGHT: f32 = 0.02;
 const CLEAR_OF_WALL: f32 = 0.3;
 /// While it turns by more than this a ball is pulled with this share of the acceleration, rad.
 const TURNING_ANGLE_MIN: f32 = 0.3;
-const SIDEWAYS: f32 = 0.4;
+const SIDEWAYS: f32 = 0.7;
 /// Nearer than this to the place the heading stays, m.
 const KEEPS_HEADING: f32 = 0.15;
 
