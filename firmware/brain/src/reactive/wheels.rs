@@ -1,8 +1,8 @@
 //! `wheels`: reactive behaviour of wheeled robots without a case; simple and rule-compliant.
 //!
-//! The robot that has the ball soonest goes for it; with it, it shoots where the goal is open, carries it on
-//! while there is room and the rules allow it, else kicks it up the freer wing. The others take places ahead
-//! of the ball and behind it, one each. SI, field frame.
+//! The robot that has the ball soonest goes for it; with it, it shoots where the goal is open, shields it
+//! from an opponent beside it, carries it on while there is room and the rules allow it, else kicks it up the
+//! freer wing. The others take places ahead of the ball and behind it, one each. SI, field frame.
 
 use geometry::{Field, GoalEnd, Point, Segment, Vector, math};
 use protocol::robot_io::OmniKick;
@@ -79,6 +79,10 @@ fn advance(belief: &Belief, attacked: GoalEnd) -> Intent {
     let near = dribbler_point.distance(goal) < SHOOTS_FROM;
     if near && room > OPEN {
         return skills::kick_held(belief, at, OmniKick::Flat(SHOT));
+    }
+    // Near their goal a kick into its defenders is worth more than the ball (docs/drills.md).
+    if !near && let Some(intent) = skills::shield(belief) {
+        return intent;
     }
     let ahead = Segment::new(dribbler_point, dribbler_point + (goal - dribbler_point).clamped(LOOKS_AHEAD));
     let blocked = belief.opponents.iter().any(|o| ahead.distance_to(*o) < BLOCKS);

@@ -46,6 +46,20 @@ pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
     Step::Running(Drive::holding(to - Vector::polar(BALL_AT, face), face).into())
 }
 
+/// Shields a held ball: turns the back to the opponent near it, and backs away from it for as far as the
+/// rules let the ball be carried. `None` without such an opponent, and when it has been kept long enough.
+pub fn shield(belief: &Belief) -> Option<Intent> {
+    let me = belief.pose.position;
+    let (opponent, _) = belief.nearest_opponent(me).filter(|(_, apart)| *apart < SHIELDS_WITHIN_M)?;
+    if belief.held() > SHIELDS_FOR_S {
+        return None;
+    }
+    let away = opponent.direction_to(me);
+    let left = limit(belief.league()) - SPARE - belief.carried();
+    let to = me + Vector::polar(left.clamp(0.0, SHIELDS_AHEAD_M), away);
+    Some(Drive { speed: SHIELDS_AT_M_S, ..Drive::holding(to, away) }.into())
+}
+
 /// Any skill's intent, but with the ball let go before it was held too long or carried too far.
 ///
 /// Host, case and reactive behaviour may all change their target while the opponents move with it. So the
@@ -117,9 +131,16 @@ fn limit(league: League) -> f32 {
 /// The ball's target is fixed after this time with it, s: host and robots have updated their targets several
 /// times by then.
 const SETTLES: f32 = 0.7;
-/// A robot that only carries or waits acts on the ball after this time with it, s: what 0.75 m take, and a
-/// pass waits for its receiver.
-const ACTS: f32 = 1.5;
+/// A robot that only carries, shields or waits acts on the ball after this time with it, s: what 0.75 m take,
+/// and a pass waits for its receiver.
+const ACTS: f32 = 2.5;
+/// An opponent whose centre is this near to the robot's may take the ball, m: half a metre between bodies.
+const SHIELDS_WITHIN_M: f32 = 0.7;
+/// A ball is shielded for this long, s: until it is acted on.
+const SHIELDS_FOR_S: f32 = ACTS;
+/// A robot that shields backs away so far at a time, m, and so fast, m/s: no faster than a ball is dribbled.
+const SHIELDS_AHEAD_M: f32 = 0.3;
+const SHIELDS_AT_M_S: f32 = 0.8;
 /// A robot that is prevented from that lets the ball go after this time, s.
 const LASTS: f32 = 3.0;
 /// Time for which two robots dispute the ball before one kicks it in any direction, s: longer than a tackle
@@ -213,10 +234,26 @@ mod tests {
     }
 
     #[test]
-    fn who_only_stands_with_the_ball_kicks_it_after_one_and_a_half_seconds() {
+    fn who_only_stands_with_the_ball_kicks_it_after_two_and_a_half_seconds() {
         let stands = Intent::Stand { face: None };
-        assert_eq!(let_go_in_time(&mut holding(1400), stands), stands);
-        assert_ne!(drive(let_go_in_time(&mut holding(1600), stands)).kick, OmniKick::None);
+        assert_eq!(let_go_in_time(&mut holding(2400), stands), stands);
+        assert_ne!(drive(let_go_in_time(&mut holding(2600), stands)).kick, OmniKick::None);
+    }
+
+    #[test]
+    fn a_ball_is_shielded_from_an_opponent_near_it_for_as_long_and_far_as_it_may_be() {
+        let mut b = holding(1000);
+        assert_eq!(shield(&b), None, "no opponent");
+        let _ = b.opponents.push(Point::new(0.0, 0.5));
+        let back = drive(shield(&b).unwrap());
+        assert!((back.face.to_degrees() + 90.0).abs() < 1e-3 && back.kick == OmniKick::None, "{back:?}");
+        assert!(back.to.y() < 0.0 && back.dribbler == 1.0, "{back:?}");
+        assert!(b.carried() - back.to.y() <= limit(b.league()) - SPARE);
+        let mut late = holding(2600);
+        let _ = late.opponents.push(Point::new(0.0, 0.5));
+        assert_eq!(shield(&late), None);
+        b.opponents[0] = Point::new(0.0, 0.8);
+        assert_eq!(shield(&b), None, "too far off to take it");
     }
 
     #[test]

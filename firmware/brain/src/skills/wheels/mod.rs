@@ -18,7 +18,7 @@ pub(crate) mod testing;
 mod wall;
 
 pub use block::block;
-pub use dribble::{carry_to, dribble, let_go_in_time};
+pub use dribble::{carry_to, dribble, let_go_in_time, shield};
 pub use get_ball::{Approach, approach, barrier, get_ball};
 pub use go_to::{go_to, keep_off};
 pub use kick::{kick, kick_held, pass, pass_speed};
