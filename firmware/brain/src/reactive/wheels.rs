@@ -80,7 +80,7 @@ fn advance(belief: &Belief, attacked: GoalEnd) -> Intent {
     if near && room > OPEN {
         return skills::kick_held(belief, at, OmniKick::Flat(SHOT));
     }
-    // Near their goal a kick into its defenders is worth more than the ball (docs/drills.md).
+    // Near their goal a kick into its defenders brings more than a kept ball (docs/drills.md).
     if !near && let Some(intent) = skills::shield(belief) {
         return intent;
     }

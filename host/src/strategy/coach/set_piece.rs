@@ -25,11 +25,11 @@ const WALL_BEYOND_M: f32 = 2.2;
 /// Time by which another robot must be sooner at the ball to take a placement over, s: as long as fetching it
 /// takes; and as usual of one that has not brought the ball nearer for this long.
 const PLACER_CHANGE_S: f32 = 4.0;
-/// The same while it is still on its way, farther from the ball than this, m: a change costs no more than a
-/// turn.
+const PLACER_STUCK_AFTER: Duration = Duration::millis(6_000);
+/// A placer farther from the ball than this, m, has not reached it: another takes over that is so much
+/// sooner, s, as a change costs no more than a turn.
 const PLACER_AT_BALL_M: f32 = 0.6;
 const PLACER_FAR_CHANGE_S: f32 = 0.8;
-const PLACER_STUCK_AFTER: Duration = Duration::millis(6_000);
 /// Time for which the robot that brings the ball is chosen anew: before, it was chosen for a stop.
 const PLACER_CHOSEN_WITHIN: Duration = Duration::millis(100);
 /// A ball that has come nearer to its place by this much counts as being placed, m.

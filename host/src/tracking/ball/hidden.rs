@@ -23,8 +23,8 @@ use crate::world::{Ball, Robot, World};
 const HIDES_WITHIN_M: f32 = 0.06;
 /// A ball this far beside the middle of a front is not in the opening, m: a ball's diameter.
 const BESIDE_M: f32 = 2.0 * rules::limits::BALL_RADIUS;
-/// A sensor detects a ball that is this near to the front, m: less than the 2 cm that break beams reach
-/// (`hil-sim`'s worlds), and more than the error of what is seen (0.01 m).
+/// A break-beam sensor detects a ball that is this near to the front, m: `barrier` of the simulator's
+/// division B (estimate).
 const FELT_WITHIN_M: f32 = 0.015;
 /// Time unseen after which a robot's sensor decides whether it has the ball: two telemetry periods, and
 /// vision's delay.
@@ -135,8 +135,8 @@ impl HiddenBall {
     fn move_beside<'a>(&mut self, mut unfelt: impl Iterator<Item = &'a Robot>) {
         let Some(last) = &mut self.last else { return };
         let robot = unfelt.find(|robot| {
-            let seen = robot.pose.to_body(last.position);
-            seen.x().abs() < rules::limits::ROBOT_RADIUS + FELT_WITHIN_M && seen.y().abs() < BESIDE_M
+            let ahead = robot.pose.to_body(last.position).x() - rules::limits::ROBOT_RADIUS;
+            ahead < FELT_WITHIN_M && dribbler_point(robot).distance(last.position) < BESIDE_M
         });
         if let Some(robot) = robot {
             let side = robot.pose.to_body(last.position).y();
@@ -221,7 +221,7 @@ mod tests {
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, NO_ROBOT), Some(2.09));
     }
 
-    /// A robot on its way to it hides it from 4 cm on, and its sensor reaches 2 cm.
+    /// A robot on its way to it hides it from 4 cm on, and its sensor reaches 1.5 cm.
     #[test]
     fn a_ball_that_lies_before_a_front_unseen_and_unfelt_stays_where_it_was_seen() {
         let at = |x_of_ball: f32, phase| {
@@ -235,6 +235,7 @@ mod tests {
         };
         assert_eq!(at(1.13, Phase::Run), Point::new(1.13, 0.0));
         assert_eq!(at(1.1, Phase::Run).y().abs(), BESIDE_M, "it would be felt there");
+        assert_eq!(at(0.9, Phase::Run), Point::new(0.9, 0.0), "at its back");
         assert_eq!(at(1.1, Phase::BallPlacement(Colour::Yellow)).y(), 0.0, "a placer backs off itself");
     }
 
