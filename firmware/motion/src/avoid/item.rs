@@ -26,6 +26,8 @@ pub(super) struct Scene<'o, F> {
     obstacles: &'o [Obstacle<F>],
     items: heapless::Vec<Item<F>, OBSTACLES_MAX>,
     moves: bool,
+    /// The robot is in a region without a body.
+    leaves_region: bool,
     within: Option<Shape<F>>,
     /// Instructions that are left for the plan.
     effort: Cell<u32>,
@@ -36,7 +38,8 @@ impl<'o, F: Copy> Scene<'o, F> {
     /// around.
     pub(super) fn new(obstacles: &'o [Obstacle<F>], within: Option<Shape<F>>, effort: u32) -> Self {
         let obstacles = obstacles.get(..OBSTACLES_MAX).unwrap_or(obstacles);
-        Self { obstacles, items: heapless::Vec::new(), moves: false, within, effort: Cell::new(effort) }
+        let items = heapless::Vec::new();
+        Self { obstacles, items, moves: false, leaves_region: false, within, effort: Cell::new(effort) }
     }
 
     /// Computes the items of all obstacles.
@@ -85,11 +88,11 @@ impl<'o, F: Copy> Scene<'o, F> {
     pub(super) fn keep_apart(&mut self, from: Point<F>, goal: Point<F>, leaves: bool) {
         let mut wall = SKIN;
         // Who only dodges a body stays out of the regions.
-        let in_region =
+        self.leaves_region =
             leaves && self.all().any(|(_, obstacle)| !obstacle.is_body && gap(&obstacle.shape, from) < 0.0);
         for (item, obstacle) in self.items.iter_mut().zip(self.obstacles) {
             let behind = || (goal - from).dot(item.center - from) <= 0.0;
-            let is_passed = in_region && !obstacle.is_body;
+            let is_passed = self.leaves_region && !obstacle.is_body;
             if is_passed || leaves && item.moves && gap(&obstacle.shape, from) < 0.0 && behind() {
                 item.leave_out();
                 continue;
@@ -228,16 +231,23 @@ impl<'o, F: Copy> Scene<'o, F> {
         })
     }
 
-    /// Whether no obstacle is touched, with the smaller margin that braking keeps.
+    /// Whether no obstacle is touched, with the smaller margin that braking keeps. For a robot that leaves a
+    /// region a body that moves and holds it does not count where the path leads past or away from it: it
+    /// comes whatever the robot does.
     pub(super) fn is_clear(&self, from: Point<F>, path: Vector<F>, at: f32, time: f32) -> bool {
         let seen =
             Seen { from, path, before: math::min(at, FORESIGHT), later: math::min(at + time, FORESIGHT) };
         self.all().all(|(item, obstacle)| {
-            let (from, path) = if item.moves { seen.by(obstacle.velocity) } else { (from, path) };
+            let (begin, relative) = if item.moves { seen.by(obstacle.velocity) } else { (from, path) };
             let margin = math::min(item.margin, BRAKE_SKIN);
-            touches(from, path, item.center, item.brake)
-                .and_then(|share| item.hit(&obstacle.shape, from, path, margin, share))
-                .is_none()
+            touches(begin, relative, item.center, item.brake)
+                .and_then(|share| item.hit(&obstacle.shape, begin, relative, margin, share))
+                .is_none_or(|_| {
+                    self.leaves_region
+                        && item.moves
+                        && item.margin < 0.0
+                        && leads_past(item.center - from, path)
+                })
         })
     }
 }
@@ -320,6 +330,12 @@ impl<F: Copy> Seen<F> {
 
 fn square(x: f32) -> f32 {
     x * x
+}
+
+/// Whether a path leads past what is at `offset`, or away from it.
+fn leads_past<F: Copy>(offset: Vector<F>, path: Vector<F>) -> bool {
+    let along = offset.dot(path);
+    along <= 0.0 || square(along) < square(PAST_MOST) * offset.dot(offset) * path.dot(path)
 }
 
 /// Distance by which the shape may grow without holding the point: corners of a box stay corners.
@@ -409,6 +425,9 @@ impl<F: Copy> Obstacle<F> {
 pub(super) const SKIN: f32 = 0.02;
 /// Distance that braking keeps, m.
 const BRAKE_SKIN: f32 = 0.005;
+/// A path that leads past a body leads towards it by this at most, as a cosine: centres 0.2 m apart pass at
+/// 0.18 m, two robots' radii.
+const PAST_MOST: f32 = 0.44;
 /// A share of a path long enough to give its direction.
 const A_LITTLE: f32 = 0.1;
 /// Square radius of an empty circle: it is never touched.
