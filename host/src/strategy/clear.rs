@@ -268,6 +268,21 @@ mod tests {
         assert_eq!(clearance(&view, &kicks, &view.ours[0], from, |_| false), None);
     }
 
+    #[test]
+    fn the_keeper_kicks_over_a_touch_line_only_where_an_opponent_is_near() {
+        let kicks = Kicks::of(League::DivisionB);
+        let from = Point::new(-4.0, 0.9);
+        let leaves = |opponent| {
+            let view = view((-4.0, 0.9), &[(-4.2, 0.8)], &[opponent, (-1.0, 0.0), (-1.0, 2.0)]);
+            let found = clearance(&view, &kicks, &view.ours[0], from, |_| true).unwrap();
+            let along = (found.at - from).unit().unwrap();
+            let length = first_touch::Flight::of(found.kick, &kicks).length();
+            (from + along * length).y().abs() > view.field.width * 0.5
+        };
+        assert!(leaves((-3.2, 0.9)));
+        assert!(!leaves((-1.5, 0.9)));
+    }
+
     /// The robot stood there with the ball, was sent round it to kick 43° to the left, and lost it.
     #[test]
     fn a_ball_at_the_front_is_cleared_straight_on_before_an_opponent_comes() {
