@@ -26,7 +26,7 @@ pub(super) struct Scene<'o, F> {
     obstacles: &'o [Obstacle<F>],
     items: heapless::Vec<Item<F>, OBSTACLES_MAX>,
     moves: bool,
-    /// The robot is in a region without a body.
+    /// The robot leaves a region without a body.
     leaves_region: bool,
     within: Option<Shape<F>>,
     /// Instructions that are left for the plan.
@@ -232,8 +232,8 @@ impl<'o, F: Copy> Scene<'o, F> {
     }
 
     /// Whether no obstacle is touched, with the smaller margin that braking keeps. For a robot that leaves a
-    /// region a body that moves and holds it does not count where the path leads past or away from it: it
-    /// comes whatever the robot does.
+    /// region, a moving body whose shape covers the start does not count where the path leads past or away
+    /// from it: standing still would not avoid it.
     pub(super) fn is_clear(&self, from: Point<F>, path: Vector<F>, at: f32, time: f32) -> bool {
         let seen =
             Seen { from, path, before: math::min(at, FORESIGHT), later: math::min(at + time, FORESIGHT) };

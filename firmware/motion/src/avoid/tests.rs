@@ -371,12 +371,12 @@ fn a_robot_that_cannot_brake_in_time_says_so_and_brakes() {
     assert!((path.next.velocity.x() - (3.0 - 3.5 * STEP)).abs() < 1e-5);
 }
 
-/// At placements an opponent that came for the ball kept a robot in the forbidden region at rest: it was in
-/// its disc after a step of 3 cm/s as before.
+/// Seen at placements: an opponent driving to the ball kept a robot at rest in the forbidden region, since
+/// one step from rest does not leave the opponent's disc.
 #[test]
-fn who_leaves_a_region_goes_past_a_body_that_comes_and_not_against_it() {
+fn a_robot_leaving_a_region_may_pass_an_approaching_robot_but_not_drive_at_it() {
     let (from, body) = (at(0.3, 0.0), at(0.4, 0.25));
-    let comes = Obstacle::robot(body, Vector::new(-0.2, -0.5), 0.29);
+    let approaching = Obstacle::robot(body, Vector::new(-0.2, -0.5), 0.29);
     let region = Obstacle::region(Shape::Disc { center: at(0.0, 0.0), radius: 0.65 });
     let is_clear = |scene: &[Obstacle<Field>], velocity: Vector<Field>| {
         let mut scene = item::Scene::new(scene, None, EFFORT_MAX);
@@ -384,9 +384,9 @@ fn who_leaves_a_region_goes_past_a_body_that_comes_and_not_against_it() {
         scene.keep_apart(from, at(0.7, 0.0), true);
         scene.is_clear(from + velocity * STEP, velocity * (0.1 * STEP), STEP, 0.1 * STEP)
     };
-    let (past, against) = (Vector::new(0.03, 0.0), Vector::new(0.0, 0.03));
-    assert!(is_clear(&[region, comes], past) && !is_clear(&[region, comes], against));
-    assert!(!is_clear(&[comes], past), "who only dodges it waits");
+    let (past, towards) = (Vector::new(0.03, 0.0), Vector::new(0.0, 0.03));
+    assert!(is_clear(&[region, approaching], past) && !is_clear(&[region, approaching], towards));
+    assert!(!is_clear(&[approaching], past), "without a region to leave it waits");
 }
 
 #[test]

@@ -31,10 +31,10 @@ const TAKEN_BELOW_M_S: f32 = 3.0;
 /// A team that comes later than the other by this is not first, s: three widths of the comparison.
 const LATER_MAX_S: f32 = 0.9;
 
-/// A ball may go over a touch line where an opponent comes to it sooner than this after the keeper, s: 115 of
-/// 300 rebounds went to an opponent where none may, and 44 with this; with more it is in play for less.
+/// A clearance may go over a touch line if an opponent reaches the ball less than this after the keeper, s:
+/// of 300 rebounds 115 went to an opponent where none may, 44 with this; with more the ball is less in play.
 const PRESSED_WITHIN_S: f32 = 1.1;
-/// And this far from the corners, m: a kick's scatter of 3° over 4 m.
+/// There it crosses the line at least this far from the corner, m: a kick's scatter of 3° over 4 m.
 const OFF_CORNERS_M: f32 = 0.2;
 
 /// What clearances of the keeper from one place are rated by.
@@ -97,14 +97,18 @@ impl<'v> KeepersRating<'v> {
         // Where no robot comes to it as foreseen it shall stay in the field, as far as it is followed: else
         // the game stops, and goes on theirs.
         let end = way.at(way.ends);
-        let leaves = flight.length() > way.ends && !self.may_leave_at(end);
-        let (at, there) =
-            if stopped || leaves { (end, self.lost_at(self.from)) } else { self.first_touch(way, flight) };
+        let goes_out = flight.length() > way.ends;
+        let (at, there) = if stopped || goes_out && !self.may_leave_at(end) {
+            (end, self.lost_at(self.from))
+        } else {
+            self.first_touch(way, flight)
+        };
         let at = way.at(at.distance(self.from).max(LENGTH_MIN_M));
         Clearance { at, kick, worth: self.release.worth(at, there) }
     }
 
-    /// Under pressure over a touch line: over their goal line it would be aimless, over ours a corner kick.
+    /// Whether the ball may leave the field there: under pressure, over a touch line. Over their goal line it
+    /// would be an aimless kick (division B), over ours a corner kick.
     fn may_leave_at(&self, end: Point<Attack>) -> bool {
         self.release.pressed_after < PRESSED_WITHIN_S
             && end.x().abs() < self.view.field.length * 0.5 - OFF_CORNERS_M
