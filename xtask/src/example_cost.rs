@@ -70,7 +70,7 @@ const SECONDS: u32 = 16;
 
 /// Decisions of each kind.
 pub(crate) const STRATEGY: Example = Example {
-    package: "host",
+    package: "onetwo-host",
     name: "strategy_cost",
     parts: &[
         part(
@@ -98,7 +98,7 @@ pub(crate) const STRATEGY: Example = Example {
 
 /// A simulated second of eleven against eleven.
 pub(crate) const SIMULATOR: Example = Example {
-    package: "hil-sim",
+    package: "onetwo-hil-sim",
     name: "small_size_cost",
     parts: &[
         part(
@@ -117,3 +117,16 @@ pub(crate) const SIMULATOR: Example = Example {
         ),
     ],
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_packages_that_are_counted_are_in_the_workspace() {
+        for Example { package, .. } in [&STRATEGY, &SIMULATOR] {
+            let found = std::process::Command::new(env!("CARGO")).args(["pkgid", package]).output().unwrap();
+            assert!(found.status.success(), "{package}: {}", String::from_utf8_lossy(&found.stderr));
+        }
+    }
+}
