@@ -69,17 +69,18 @@ impl BallPath {
     /// The opponent with the least margin along a flat pass, if it is below [`SAFE`]; the first one below
     /// −[`SAFE`], which certainly has the ball.
     pub fn flat(&self, kick: &FlatKick, opponents: &[PassOpponent]) -> Option<Interceptor> {
-        self.flat_until(kick, opponents, -SAFE)
+        self.flat_until(kick, opponents, kick.at(self.length), -SAFE)
     }
 
-    /// The same, or the first one below `enough`: the caller needs no smaller one.
+    /// The same for a ball that is at the path's `end` at this time and speed, s and m/s; or the first one
+    /// below `enough`: the caller needs no smaller one.
     pub fn flat_until(
         &self,
         kick: &FlatKick,
         opponents: &[PassOpponent],
+        end: (f32, f32),
         enough: f32,
     ) -> Option<Interceptor> {
-        let end = kick.at(self.length);
         self.worst(opponents, end.0, enough, |opponent, worst| {
             let length = self.open_to(opponent);
             let end = if length < self.length { kick.at(length) } else { end };

@@ -260,7 +260,7 @@ impl<'k> PassScene<'k> {
     fn weigh(&self, at: Point<Attack>, floor: f32) -> Rating {
         let c = self.kicks.constants();
         let path = self.path(at - self.from);
-        let (along, length) = (path.along, at.distance(self.from));
+        let BallPath { along, length, .. } = path;
         let spoiler = self.spoiler(at, c);
         let goal = Point::new(self.opening.x, 0.0);
         let mut rating = Rating {
@@ -297,28 +297,29 @@ impl<'k> PassScene<'k> {
         if place * rating.goal().max(rating.held) <= floor {
             return rating;
         }
-        rating.shot = self.shot(at, along, c);
-        rating.goal_factors[0] = given::beats_the_keeper(rating.shot.time, c);
-        rating.goal_factors[1] = given::open_goal(rating.shot.angle, c);
-        rating.goal_factors[2] = given::shot_in_time(rating.shot.one_touch, c);
-        let goal = place * rating.goal().max(rating.held);
-        if goal <= floor {
-            return rating;
-        }
         rating.receiver_time = self.receiver.time_to(at);
         rating.model = self.model(at, rating.receiver_time);
         let soonest = rating.model.map_or(rating.receiver_time + SAFE, |(_, time)| time);
         rating.receive_factors[0] = given::first_there(rating.receiver_time, soonest, c);
-        let first = goal * rating.receive_factors[0];
+        let first = place * rating.receive_factors[0];
+        if first * rating.goal().max(rating.held) <= floor {
+            return rating;
+        }
+        rating.shot = self.shot(at, along, c);
+        rating.goal_factors[0] = given::beats_the_keeper(rating.shot.time, c);
+        rating.goal_factors[1] = given::open_goal(rating.shot.angle, c);
+        rating.goal_factors[2] = given::shot_in_time(rating.shot.one_touch, c);
+        let first = first * rating.goal().max(rating.held);
         if first <= floor {
             return rating;
         }
         let flat = self.kicks.flat(length);
         rating.kick = PassKick::Flat { speed: flat.speed };
-        rating.ball_time = flat.at(length).0;
+        let end = flat.at(length);
+        rating.ball_time = end.0;
         rating.receive_factors[2] = self.time_to_react(rating.ball_time, rating.receiver_time, c);
         rating.interceptor =
-            path.flat_until(&flat, &self.opponents, enough(floor, first * rating.receive_factors[2], c));
+            path.flat_until(&flat, &self.opponents, end, enough(floor, first * rating.receive_factors[2], c));
         let margin = rating.interceptor.map_or(SAFE, |found| found.margin);
         rating.receive_factors[1] = given::not_intercepted(margin, false, c);
         self.chip_if_better(&path, &mut rating, floor, c);
@@ -343,7 +344,7 @@ impl<'k> PassScene<'k> {
         if flat >= self.chip_prior || others * self.chip_prior <= floor.max(CHIP_GOAL_P_MIN) {
             return;
         }
-        let length = rating.at.distance(self.from);
+        let length = path.length;
         let Some(kick) = self.kicks.chip(length) else { return };
         let interceptor = path.chip(&kick, &self.opponents);
         let ball_time = kick.at(length).0;
