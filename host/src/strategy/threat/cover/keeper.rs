@@ -56,11 +56,18 @@ impl Choice<'_> {
             let [back, front] = [0.0, math::FRAC_PI_2].map(|half| self.place.keeper(off, half).0);
             [back, back + (front - back) * 0.5, front]
         });
-        let planned = (self.cover.keeper, self.cost(self.cover.keeper));
-        places
-            .map(|at| (at, self.cost(at)))
-            .fold(planned, |best, next| if next.1 < best.1 { next } else { best })
-            .0
+        let mut best = (self.cover.keeper, self.cost(self.cover.keeper));
+        for at in places {
+            // Its way alone may cost more than the best place.
+            let [moves, differs] = self.ways(at);
+            if moves + differs < best.1 {
+                let cost = self.cost(at);
+                if cost < best.1 {
+                    best = (at, cost);
+                }
+            }
+        }
+        best.0
     }
 
     /// The widest gaps with the keeper there, now and later, and its way, rad.
@@ -69,10 +76,17 @@ impl Choice<'_> {
         let covers =
             opening.shadow(at, f32::INFINITY).map(|body| widened(body, self.place.distance(at), settings));
         let [now, then] = &self.shadows;
-        widest_beside(opening, now, covers)
-            + widest_beside(opening, then, covers)
-            + settings.keeper_moves * at.distance(self.stands)
-            + settings.keeper_differs * at.distance(self.cover.keeper)
+        let [moves, differs] = self.ways(at);
+        widest_beside(opening, now, covers) + widest_beside(opening, then, covers) + moves + differs
+    }
+
+    /// What its ways there from where it is and from its planned place cost, rad.
+    fn ways(&self, at: Point<Attack>) -> [f32; 2] {
+        let settings = self.place.settings;
+        [
+            settings.keeper_moves * at.distance(self.stands),
+            settings.keeper_differs * at.distance(self.cover.keeper),
+        ]
     }
 }
 
